@@ -1,2 +1,49 @@
-//! placeholder
+#![doc = include_str!("../README.md")]
 #![no_std]
+#![forbid(unsafe_code)]
+
+pub mod adaptive;
+pub mod controller;
+pub mod ds;
+pub mod limits;
+pub mod modulation;
+pub mod obstacle;
+pub mod rotation;
+pub mod scalar;
+pub mod status;
+pub mod table;
+
+pub use adaptive::SteeringPolicy;
+pub use controller::{Command, Controller, RobotState, Settings, SettingsError, Stages};
+pub use ds::{Certified, Component, LpvDs, Motion};
+pub use limits::Limits;
+pub use obstacle::{Obstacle, ObstacleError, ObstacleSpec};
+pub use scalar::Scalar;
+pub use status::{Region, Status};
+pub use table::{Ageing, Table, TableFull};
+
+/// A position, velocity or direction in d = 2 or 3 dimensions.
+pub type Vector<S, const D: usize> = nalgebra::SVector<S, D>;
+/// A d x d matrix.
+pub type Matrix<S, const D: usize> = nalgebra::SMatrix<S, D, D>;
+
+/// Largest coordinate, in metres, of anything the method takes in (in both directions). Beyond it f32 has no
+/// millimetres left, and squares of squares would leave its range.
+pub const RANGE: f64 = 1000.0;
+
+/// Is every entry finite and within [`RANGE`]?
+pub(crate) fn in_range<S: Scalar, const D: usize>(v: &Vector<S, D>) -> bool {
+    v.iter().all(|x| x.abs() <= S::from_f64(RANGE))
+}
+
+/// Is every entry zero?
+pub(crate) fn is_zero<S: Scalar, const R: usize, const C: usize>(
+    m: &nalgebra::SMatrix<S, R, C>,
+) -> bool {
+    m.iter().all(|x| *x == S::zero())
+}
+
+/// Euclidean length, by this crate's own square root rather than nalgebra's, so that host and board agree.
+pub(crate) fn norm<S: Scalar, const D: usize>(v: &Vector<S, D>) -> S {
+    v.dot(v).sqrt()
+}

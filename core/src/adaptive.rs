@@ -1,0 +1,173 @@
+//! Motion in soft layers: faster through one, slower where two overlap (eqs. 15 and 27 of Chen et al.).
+
+use crate::obstacle::Sample;
+use crate::{Scalar, Vector, norm};
+
+/// Which way the push in a soft layer points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SteeringPolicy<S> {
+    /// The paper to the letter: the reference direction turned by theta_2 (about z in 3-D), with the paper's sign.
+    /// Whether it speeds the robot up or stops it dead depends on the side it passes on.
+    Fixed {
+        /// cos theta_2
+        cos: S,
+        /// sin theta_2
+        sin: S,
+    },
+    /// Along the tangent plane in the direction of the flow, at most `beta` times the nominal speed, fading in at the shell.
+    /// Keeps the attractor an equilibrium and the velocity continuous.
+    WithFlow {
+        /// Largest push over |f(x)|.
+        beta: S,
+    },
+}
+
+impl<S: Scalar> SteeringPolicy<S> {
+    /// The paper's policy for theta_2 in rad.
+    pub fn fixed(angle: S) -> Self {
+        Self::Fixed {
+            cos: angle.cos(),
+            sin: angle.sin(),
+        }
+    }
+}
+
+/// Gamma_k over which `WithFlow` fades in, inside the shell.
+const BAND: f64 = 0.1;
+/// What the fixed side adds to the tangential flow, over |f|: enough to leave a saddle point.
+const SIDE: f64 = 0.01;
+/// Tangential flow, over |f|, from which the push has its full length.
+const FULL: f64 = 0.02;
+/// Largest slow-down over the speed: an intersection slows the robot and never turns it round.
+const SLOWEST: f64 = 0.8;
+
+/// Is x in this obstacle's soft region?
+pub(crate) fn is_soft<S: Scalar, const D: usize>(o: &Sample<S, D>) -> bool {
+    o.gamma > S::one() && o.gamma_soft <= S::one()
+}
+
+/// The modulated velocity u, adapted to the soft layers x is in; `gain` is the paper's c, m/s.
+pub(crate) fn adapt<S: Scalar, const D: usize>(
+    policy: &SteeringPolicy<S>,
+    gain: S,
+    f: &Vector<S, D>,
+    u: Vector<S, D>,
+    around: &[Sample<S, D>],
+) -> Vector<S, D> {
+    match policy {
+        SteeringPolicy::Fixed { cos, sin } => fixed(*cos, *sin, gain, u, around),
+        SteeringPolicy::WithFlow { beta } => with_flow(gain, *beta * norm(f), norm(f), u, around),
+    }
+}
+
+fn soft<S: Scalar, const D: usize>(around: &[Sample<S, D>]) -> impl Iterator<Item = &Sample<S, D>> {
+    around.iter().filter(|o| is_soft(o))
+}
+
+/// Every obstacle soft here but `n`.
+fn others<'a, S: Scalar, const D: usize>(
+    around: &'a [Sample<S, D>],
+    n: &'a Sample<S, D>,
+) -> impl Iterator<Item = &'a Sample<S, D>> {
+    soft(around).filter(move |m| !core::ptr::eq(*m, n))
+}
+
+/// c / Gamma_k^2
+fn speed_up<S: Scalar, const D: usize>(gain: S, n: &Sample<S, D>) -> S {
+    gain / (n.gamma_soft * n.gamma_soft)
+}
+
+/// c (2 / (Gamma_k,n + Gamma_k,m))^2
+fn slow_down<S: Scalar, const D: usize>(gain: S, n: &Sample<S, D>, m: &Sample<S, D>) -> S {
+    let ratio = S::from_f64(2.0) / (n.gamma_soft + m.gamma_soft);
+    gain * ratio * ratio
+}
+
+fn fixed<S: Scalar, const D: usize>(
+    cos: S,
+    sin: S,
+    gain: S,
+    mut u: Vector<S, D>,
+    around: &[Sample<S, D>],
+) -> Vector<S, D> {
+    let alone = soft(around).count() == 1;
+    for n in soft(around) {
+        let r = n.arm / norm(&n.arm);
+        let mut push = r;
+        (push[0], push[1]) = (cos * r[0] - sin * r[1], sin * r[0] + cos * r[1]);
+        // sgn(cos(theta_2 - theta_1)), without the angles
+        if cos * n.first_axis[0] + sin * n.first_axis[1] < S::zero() {
+            push = -push;
+        }
+        if alone {
+            u += push * speed_up(gain, n);
+        } else {
+            let tangential = push - n.normal * push.dot(&n.normal);
+            let sum = others(around, n).fold(S::zero(), |sum, m| sum + slow_down(gain, n, m));
+            u -= tangential * sum;
+        }
+    }
+    u
+}
+
+fn with_flow<S: Scalar, const D: usize>(
+    gain: S,
+    largest: S,
+    nominal: S,
+    u: Vector<S, D>,
+    around: &[Sample<S, D>],
+) -> Vector<S, D> {
+    if !(nominal > S::zero()) {
+        return u;
+    }
+    let mut faster = Vector::<S, D>::zeros();
+    let mut slower = Vector::<S, D>::zeros();
+    for n in soft(around) {
+        let phi = fade(n);
+        let mut alone = phi;
+        let mut pairs = S::zero();
+        for m in others(around, n) {
+            alone *= S::one() - fade(m);
+            pairs += slow_down(gain, n, m).min(largest) * fade(m);
+        }
+        let along = along_flow(&u, nominal, n);
+        faster += along * (alone * speed_up(gain, n).min(largest));
+        slower += along * (phi * pairs);
+    }
+    let (slowing, bound) = (norm(&slower), S::from_f64(SLOWEST) * norm(&u));
+    if slowing > bound {
+        slower *= bound / slowing;
+    }
+    u + faster - slower
+}
+
+/// 0 at the shell, 1 from a thin band on inwards.
+fn fade<S: Scalar, const D: usize>(o: &Sample<S, D>) -> S {
+    ((S::one() - o.gamma_soft) / S::from_f64(BAND)).min(S::one())
+}
+
+/// The direction of the flow in the tangent plane, shorter than one where there is hardly any.
+fn along_flow<S: Scalar, const D: usize>(
+    u: &Vector<S, D>,
+    nominal: S,
+    o: &Sample<S, D>,
+) -> Vector<S, D> {
+    let t = u - o.normal * u.dot(&o.normal) + side(&o.normal) * (S::from_f64(SIDE) * nominal);
+    t / norm(&t).max(S::from_f64(FULL) * nominal)
+}
+
+/// A fixed tangent: the normal turned by +90 degrees in 2-D; in 3-D a x n for an axis along which robots seldom approach.
+fn side<S: Scalar, const D: usize>(n: &Vector<S, D>) -> Vector<S, D> {
+    let mut t = Vector::<S, D>::zeros();
+    if D == 2 {
+        (t[0], t[1]) = (-n[1], n[0]);
+    } else {
+        let (one, two) = (S::from_f64(1.0 / 3.0), S::from_f64(2.0 / 3.0));
+        (t[0], t[1], t[2]) = (
+            two * n[2] - two * n[1],
+            two * n[0] - one * n[2],
+            one * n[1] - two * n[0],
+        );
+    }
+    t
+}

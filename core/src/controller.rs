@@ -1,0 +1,278 @@
+//! The tick: position in, velocity out.
+
+use crate::adaptive::{adapt, is_soft};
+use crate::modulation::modulate;
+use crate::table::Surroundings;
+use crate::{
+    Ageing, Limits, Motion, Region, Scalar, Status, SteeringPolicy, Table, Vector, in_range,
+};
+
+/// How obstacles bend the motion, and what the robot may be asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings<S> {
+    /// Are soft layers soft? If not, this is the original method (k = 1).
+    pub deformable: bool,
+    /// c of eqs. 15 and 27, m/s.
+    pub gain: S,
+    /// Which way the push in a soft layer points.
+    pub steering: SteeringPolicy<S>,
+    /// Speed and acceleration.
+    pub limits: Limits<S>,
+    /// What becomes of obstacles that are not updated.
+    pub ageing: Ageing<S>,
+}
+
+impl<S: Scalar> Default for Settings<S> {
+    /// Deformable, c = 0.03 m/s, with the flow at most as fast again, and the defaults of [`Limits`] and [`Ageing`].
+    fn default() -> Self {
+        Self {
+            deformable: true,
+            gain: S::from_f64(0.03),
+            steering: SteeringPolicy::WithFlow { beta: S::one() },
+            limits: Limits::default(),
+            ageing: Ageing::default(),
+        }
+    }
+}
+
+/// The setting that is out of its range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SettingsError {
+    /// c: 0 to 10 m/s.
+    Gain,
+    /// theta_2 finite, or beta 0 to 10.
+    Steering,
+    /// Above 0, at most 100 m/s.
+    Speed,
+    /// Above 0, at most 10^4 m/s^2.
+    Acceleration,
+    /// Above 0, at most 10^4 m/s^2.
+    Deceleration,
+    /// Times 0 to 3600 s with hold no less than time to live, growth 0 to 10 m/s.
+    Ageing,
+}
+
+impl<S: Scalar> Settings<S> {
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// The first setting out of its range, as [`SettingsError`] states it.
+    pub fn check(&self) -> Result<(), SettingsError> {
+        let from_zero = |x: S, high: f64| x >= S::zero() && x <= S::from_f64(high);
+        let above_zero = |x: S, high: f64| x > S::zero() && x <= S::from_f64(high);
+        let steering = match self.steering {
+            SteeringPolicy::Fixed { cos, sin } => cos.is_finite() && sin.is_finite(),
+            SteeringPolicy::WithFlow { beta } => from_zero(beta, 10.0),
+        };
+        let Ageing {
+            time_to_live,
+            growth,
+            hold,
+        } = self.ageing;
+        let ageing = from_zero(time_to_live, 3600.0)
+            && from_zero(growth, 10.0)
+            && from_zero(hold, 3600.0)
+            && hold >= time_to_live;
+        let check = |ok: bool, error: SettingsError| if ok { Ok(()) } else { Err(error) };
+        check(from_zero(self.gain, 10.0), SettingsError::Gain)?;
+        check(steering, SettingsError::Steering)?;
+        check(above_zero(self.limits.speed, 100.0), SettingsError::Speed)?;
+        check(
+            self.limits.acceleration.is_none_or(|a| above_zero(a, 1e4)),
+            SettingsError::Acceleration,
+        )?;
+        check(
+            above_zero(self.limits.deceleration, 1e4),
+            SettingsError::Deceleration,
+        )?;
+        check(ageing, SettingsError::Ageing)
+    }
+}
+
+/// Where the robot is: finite and within range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotState<S: Scalar, const D: usize> {
+    position: Vector<S, D>,
+}
+
+impl<S: Scalar, const D: usize> RobotState<S, D> {
+    /// A state at `position`, m; `None` if a coordinate is not finite or beyond +-1000 m.
+    pub fn new(position: Vector<S, D>) -> Option<Self> {
+        in_range(&position).then_some(Self { position })
+    }
+    /// m
+    pub fn position(&self) -> &Vector<S, D> {
+        &self.position
+    }
+}
+
+/// What a tick asks of the robot, and what it saw.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Command<S: Scalar, const D: usize> {
+    /// m/s
+    pub velocity: Vector<S, D>,
+    /// The least Gamma of all obstacles, above 1 outside every hard core; the largest number there is without obstacles.
+    pub gamma: S,
+    /// The obstacle it belongs to.
+    pub nearest: Option<u16>,
+    /// Where the robot is.
+    pub region: Region,
+    /// Conditions the command was computed under.
+    pub status: Status,
+}
+
+/// The velocity after each stage of a tick that depends on nothing but the position, m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stages<S: Scalar, const D: usize> {
+    /// f(x)
+    pub nominal: Vector<S, D>,
+    /// Round the hard cores.
+    pub modulated: Vector<S, D>,
+    /// Faster or slower in soft layers.
+    pub adapted: Vector<S, D>,
+    /// The least Gamma of all obstacles.
+    pub gamma: S,
+    /// The obstacle it belongs to.
+    pub nearest: Option<u16>,
+    /// Where the point is.
+    pub region: Region,
+    /// What was out of the ordinary.
+    pub status: Status,
+}
+
+/// One motion among at most `CAP` obstacles. See the crate's front page for an example.
+#[derive(Clone, Debug)]
+pub struct Controller<S: Scalar, const D: usize, const CAP: usize> {
+    motion: Motion<S, D>,
+    settings: Settings<S>,
+    table: Table<S, D, CAP>,
+    previous: Vector<S, D>,
+}
+
+impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
+    /// A controller at rest, without obstacles. `settings` are taken as they are: [`Settings::check`] those that come from outside.
+    pub fn new(motion: Motion<S, D>, settings: Settings<S>) -> Self {
+        Self {
+            motion,
+            settings,
+            table: Table::new(),
+            previous: Vector::zeros(),
+        }
+    }
+
+    /// One step of `dt` seconds: the velocity to drive with from now on, and time passes for the obstacles.
+    pub fn tick(&mut self, state: &RobotState<S, D>, dt: S) -> Command<S, D> {
+        let stages = self.evaluate(state);
+        let (velocity, limited) = self
+            .settings
+            .limits
+            .apply(stages.adapted, &self.previous, dt);
+        let status = stages.status | limited | self.table.status(&self.settings.ageing);
+        self.pass(velocity, dt);
+        Command {
+            velocity,
+            gamma: stages.gamma,
+            nearest: stages.nearest,
+            region: stages.region,
+            status,
+        }
+    }
+
+    /// One step without a fresh state: from the last command towards rest, within the deceleration limit. `last` is where the robot was
+    /// last known to be.
+    pub fn tick_late(&mut self, last: &RobotState<S, D>, dt: S) -> Command<S, D> {
+        let around = self
+            .table
+            .surroundings(last.position(), self.settings.deformable);
+        let velocity = self.settings.limits.ramp_down(&self.previous, dt);
+        let status = Status::LATE | self.table.status(&self.settings.ageing);
+        self.pass(velocity, dt);
+        Command {
+            velocity,
+            gamma: around.gamma,
+            nearest: around.nearest,
+            region: region(&around),
+            status,
+        }
+    }
+
+    /// All stages that depend on the position alone; nothing changes.
+    pub fn evaluate(&self, state: &RobotState<S, D>) -> Stages<S, D> {
+        let x = state.position();
+        let nominal = self.motion.velocity(x);
+        let around = self.table.surroundings(x, self.settings.deformable);
+        let (modulated, unusable) = modulate(&nominal, &around.samples);
+        let adapted = adapt(
+            &self.settings.steering,
+            self.settings.gain,
+            &nominal,
+            modulated,
+            &around.samples,
+        );
+        let status = if unusable {
+            Status::REFERENCE
+        } else {
+            Status::empty()
+        };
+        Stages {
+            nominal,
+            modulated,
+            adapted,
+            gamma: around.gamma,
+            nearest: around.nearest,
+            region: region(&around),
+            status,
+        }
+    }
+
+    /// Forgets the last command: the robot stands still.
+    pub fn rest(&mut self) {
+        self.previous = Vector::zeros();
+    }
+
+    /// Changes the motion; obstacles stay.
+    pub fn set_motion(&mut self, motion: Motion<S, D>) {
+        self.motion = motion;
+    }
+
+    /// Changes the settings; [`Settings::check`] those that come from outside.
+    pub fn set_settings(&mut self, settings: Settings<S>) {
+        self.settings = settings;
+    }
+
+    /// The nominal motion.
+    pub fn motion(&self) -> &Motion<S, D> {
+        &self.motion
+    }
+
+    /// The settings in force.
+    pub fn settings(&self) -> &Settings<S> {
+        &self.settings
+    }
+
+    /// The obstacles.
+    pub fn table(&self) -> &Table<S, D, CAP> {
+        &self.table
+    }
+
+    /// The obstacles, to be changed.
+    pub fn table_mut(&mut self) -> &mut Table<S, D, CAP> {
+        &mut self.table
+    }
+
+    fn pass(&mut self, velocity: Vector<S, D>, dt: S) {
+        self.previous = velocity;
+        self.table.advance(dt, &self.settings.ageing);
+    }
+}
+
+fn region<S: Scalar, const D: usize, const CAP: usize>(around: &Surroundings<S, D, CAP>) -> Region {
+    if around.gamma <= S::one() {
+        return Region::Hard;
+    }
+    match around.samples.iter().filter(|o| is_soft(o)).count() {
+        0 => Region::Free,
+        1 => Region::Soft,
+        _ => Region::Intersection,
+    }
+}

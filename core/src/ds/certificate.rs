@@ -1,0 +1,147 @@
+//! The proof that a skill ends at its attractor, checked on the very numbers that run.
+
+use core::ops::Deref;
+
+use super::LpvDs;
+use crate::{Matrix, Scalar};
+
+/// A model whose certificate was checked. The only way to get one is [`LpvDs::certify`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certified<M> {
+    model: M,
+}
+
+impl<M> Deref for Certified<M> {
+    type Target = M;
+    fn deref(&self) -> &M {
+        &self.model
+    }
+}
+
+/// What the check found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Certificate<S> {
+    /// A rate sigma, 1/s, for which A_k' P + P A_k <= -2 sigma P holds for every k, rounding included: V decreases at least
+    /// as fast as e^(-2 sigma t), the distance (in P's norm) as e^(-sigma t).
+    pub rate: S,
+    /// The component that limits the rate.
+    pub slowest: usize,
+}
+
+/// Why a model is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CertificateError {
+    /// P is not symmetric positive definite.
+    Lyapunov,
+    /// A_k' P + P A_k is not negative definite for this k.
+    Component(usize),
+}
+
+impl<S: Scalar, const D: usize> LpvDs<S, D> {
+    /// Checks P = P' > 0 and A_k' P + P A_k < 0 for every k, in this model's own precision.
+    ///
+    /// Both are decided by L D L' factors with every pivot positive after the diagonal was lowered by a bound on the
+    /// rounding error of the products and of the factors (8 d^2 eps max|terms|, some twice what d <= 3 needs), so "holds"
+    /// means it holds for the exact values of the stored numbers.
+    ///
+    /// # Errors
+    /// Which part fails, with its k.
+    ///
+    /// ```
+    /// use nalgebra::{Matrix2, Vector2};
+    /// use pliant_core::{Component, LpvDs, ds::CertificateError};
+    /// let part = |a| Component { log_weight: 0.0, mean: Vector2::zeros(), whitening: Matrix2::identity(), a };
+    /// let stable = part(Matrix2::new(-1.0_f32, 0.5, -0.5, -1.0));
+    /// let not = part(Matrix2::new(-1.0_f32, 3.0, 0.0, -1.0));
+    /// let model = |c: &[_]| LpvDs::new(Vector2::zeros(), Matrix2::identity(), c).unwrap();
+    /// assert!(model(&[stable.clone()]).certify().is_ok());
+    /// assert_eq!(model(&[stable, not]).certify().unwrap_err(), CertificateError::Component(1));
+    /// ```
+    pub fn certify(self) -> Result<Certified<Self>, CertificateError> {
+        self.check_certificate(S::zero())?;
+        Ok(Certified { model: self })
+    }
+
+    fn check_certificate(&self, rate: S) -> Result<(), CertificateError> {
+        let p = self.lyapunov();
+        if *p != p.transpose() || !positive_definite(p, rounding(p)) {
+            return Err(CertificateError::Lyapunov);
+        }
+        match self
+            .components()
+            .iter()
+            .position(|c| !decreases(&c.a, p, rate))
+        {
+            None => Ok(()),
+            Some(k) => Err(CertificateError::Component(k)),
+        }
+    }
+}
+
+impl<S: Scalar, const D: usize> Certified<LpvDs<S, D>> {
+    /// The guaranteed rate of convergence, found by bisection between 0 and the largest rate any component could have.
+    /// Some thousands of operations: not for the tick.
+    pub fn certificate(&self) -> Certificate<S> {
+        let mut found = Certificate {
+            rate: S::MAX,
+            slowest: 0,
+        };
+        for (k, c) in self.components().iter().enumerate() {
+            let (mut low, mut high) = (S::zero(), S::from_f64(1.0));
+            while decreases(&c.a, self.lyapunov(), high) && high < S::from_f64(1e6) {
+                (low, high) = (high, high + high);
+            }
+            for _ in 0..20 {
+                let middle = (low + high) * S::from_f64(0.5);
+                if decreases(&c.a, self.lyapunov(), middle) {
+                    low = middle
+                } else {
+                    high = middle
+                }
+            }
+            if low < found.rate {
+                found = Certificate {
+                    rate: low,
+                    slowest: k,
+                };
+            }
+        }
+        found
+    }
+}
+
+/// Is A' P + P A + 2 rate P negative definite, rounding included?
+fn decreases<S: Scalar, const D: usize>(a: &Matrix<S, D>, p: &Matrix<S, D>, rate: S) -> bool {
+    let pa = p * a;
+    let two_rate = rate + rate;
+    let m = -(pa + pa.transpose()) - p * two_rate;
+    let (a, p) = (a.map(|x| x.abs()), p.map(|x| x.abs()));
+    let pa = p * a;
+    positive_definite(&m, rounding(&(pa + pa.transpose() + p * two_rate)))
+}
+
+/// A bound on the spectral norm of all rounding errors, from the sizes of the terms that went in.
+fn rounding<S: Scalar, const D: usize>(terms: &Matrix<S, D>) -> S {
+    let largest = terms.iter().fold(S::zero(), |m, x| m.max(x.abs()));
+    S::EPSILON * largest * S::from_f64(8.0 * (D * D) as f64)
+}
+
+/// Has m - shift I an L D L' with positive pivots? False for anything not-a-number.
+fn positive_definite<S: Scalar, const D: usize>(m: &Matrix<S, D>, shift: S) -> bool {
+    let mut l = Matrix::<S, D>::zeros();
+    let mut pivots = [S::zero(); D];
+    for j in 0..D {
+        let pivot = (0..j).fold(m[(j, j)] - shift, |s, k| {
+            s - l[(j, k)] * l[(j, k)] * pivots[k]
+        });
+        if !(pivot > S::zero() && pivot.is_finite()) {
+            return false;
+        }
+        pivots[j] = pivot;
+        for i in j + 1..D {
+            l[(i, j)] =
+                (0..j).fold(m[(i, j)], |s, k| s - l[(i, k)] * l[(j, k)] * pivots[k]) / pivot;
+        }
+    }
+    true
+}

@@ -1,0 +1,154 @@
+//! The LPV-DS: a Gaussian mixture that blends linear systems with one attractor.
+
+use crate::{Matrix, RANGE, Scalar, Vector, in_range};
+
+/// Most components a skill may have: what a device has room for.
+pub const MAX_COMPONENTS: usize = 16;
+
+/// One linear system and the Gaussian that says where it rules.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Component<S: Scalar, const D: usize> {
+    /// log pi_k - 1/2 log det Sigma_k; a constant common to all components may be left out.
+    pub log_weight: S,
+    /// mu_k, m.
+    pub mean: Vector<S, D>,
+    /// W_k, 1/m: lower triangular with W'W = Sigma^-1, so that (x - mu)' Sigma^-1 (x - mu) = |W (x - mu)|^2 is never negative,
+    /// whatever the rounding.
+    pub whitening: Matrix<S, D>,
+    /// A_k, 1/s.
+    pub a: Matrix<S, D>,
+}
+
+/// f(x) = sum_k gamma_k(x) A_k (x - x*), with the Lyapunov matrix P that is said to prove it stable.
+///
+/// Built by [`LpvDs::new`], driven only once [`LpvDs::certify`] has found the proof to hold.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LpvDs<S: Scalar, const D: usize> {
+    attractor: Vector<S, D>,
+    lyapunov: Matrix<S, D>,
+    components: heapless::Vec<Component<S, D>, MAX_COMPONENTS>,
+}
+
+/// Why a set of numbers is not a skill.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ModelError {
+    /// The field at fault.
+    pub field: ModelField,
+    /// The component at fault, if it is one component's field.
+    pub component: Option<usize>,
+}
+
+/// A field of a skill.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModelField {
+    /// x*: finite, within range.
+    Attractor,
+    /// The gain of a linear motion: positive, at most 1000 1/s.
+    Gain,
+    /// P: finite, at most 1e6.
+    Lyapunov,
+    /// The number of components: 1 to [`MAX_COMPONENTS`].
+    Components,
+    /// log pi - 1/2 log det Sigma: finite, within +-1e6.
+    Weight,
+    /// mu: finite, within range.
+    Mean,
+    /// W: finite, at most 1e6 1/m (a tenth of a millimetre is 1e4).
+    Whitening,
+    /// A: finite, at most 1e4 1/s.
+    A,
+}
+
+impl ModelError {
+    pub(crate) fn of(field: ModelField) -> Self {
+        Self {
+            field,
+            component: None,
+        }
+    }
+}
+
+impl<S: Scalar, const D: usize> LpvDs<S, D> {
+    /// Checks ranges; whether the motion is stable is for [`LpvDs::certify`] to say.
+    ///
+    /// # Errors
+    /// The first field that is not finite or out of its range, as [`ModelField`] states it.
+    pub fn new(
+        attractor: Vector<S, D>,
+        lyapunov: Matrix<S, D>,
+        components: &[Component<S, D>],
+    ) -> Result<Self, ModelError> {
+        let within = |m: &Matrix<S, D>, bound: f64| m.iter().all(|x| x.abs() <= S::from_f64(bound));
+        if !in_range(&attractor) {
+            return Err(ModelError::of(ModelField::Attractor));
+        }
+        if !within(&lyapunov, 1e6) {
+            return Err(ModelError::of(ModelField::Lyapunov));
+        }
+        let components = match heapless::Vec::from_slice(components) {
+            Ok(components) if !components.is_empty() => components,
+            _ => return Err(ModelError::of(ModelField::Components)),
+        };
+        for (k, c) in components.iter().enumerate() {
+            let fault = if !(c.log_weight.abs() <= S::from_f64(1e6)) {
+                ModelField::Weight
+            } else if !in_range(&c.mean) {
+                ModelField::Mean
+            } else if !within(&c.whitening, 1e6) {
+                ModelField::Whitening
+            } else if !within(&c.a, 1e4) {
+                ModelField::A
+            } else {
+                continue;
+            };
+            return Err(ModelError {
+                field: fault,
+                component: Some(k),
+            });
+        }
+        Ok(Self {
+            attractor,
+            lyapunov,
+            components,
+        })
+    }
+
+    /// f(x), m/s. Zero at the attractor, finite for x within [`RANGE`](crate::RANGE).
+    pub fn velocity(&self, x: &Vector<S, D>) -> Vector<S, D> {
+        let mut exponents = [S::zero(); MAX_COMPONENTS];
+        let mut largest = -S::MAX;
+        for (e, c) in exponents.iter_mut().zip(&self.components) {
+            let y = c.whitening * (x - c.mean);
+            *e = c.log_weight - S::from_f64(0.5) * y.dot(&y);
+            largest = largest.max(*e);
+        }
+        // Log-sum-exp: one exponent is now zero, so the sum is at least one and nothing is 0/0 far from the data.
+        let offset = x - self.attractor;
+        let mut sum = S::zero();
+        let mut velocity = Vector::<S, D>::zeros();
+        for (e, c) in exponents.iter().zip(&self.components) {
+            let gamma = (*e - largest).exp();
+            sum += gamma;
+            velocity += c.a * offset * gamma;
+        }
+        velocity / sum
+    }
+
+    /// x*, m.
+    pub fn attractor(&self) -> &Vector<S, D> {
+        &self.attractor
+    }
+
+    /// P of V = (x - x*)' P (x - x*).
+    pub fn lyapunov(&self) -> &Matrix<S, D> {
+        &self.lyapunov
+    }
+
+    /// The components, 1 to [`MAX_COMPONENTS`].
+    pub fn components(&self) -> &[Component<S, D>] {
+        &self.components
+    }
+}
+
+// |W (x - mu)|^2 <= (3 * 1e6 * 2 * RANGE)^2 * 3 stays finite in f32.
+const _: () = assert!(9.0 * 1e12 * 4.0 * RANGE * RANGE * 3.0 < f32::MAX as f64);

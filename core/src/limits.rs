@@ -1,0 +1,96 @@
+//! What the robot may be asked for.
+
+use crate::{Scalar, Status, Vector, norm};
+
+/// Bounds on the commanded velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits<S> {
+    /// Largest speed, m/s.
+    pub speed: S,
+    /// Largest change of velocity, m/s^2; `None` leaves it free.
+    pub acceleration: Option<S>,
+    /// How fast a command ramps to zero when the robot's state stays away, m/s^2.
+    pub deceleration: S,
+}
+
+impl<S: Scalar> Default for Limits<S> {
+    /// 0.5 m/s, no acceleration limit, 2 m/s^2.
+    fn default() -> Self {
+        Self {
+            speed: S::from_f64(0.5),
+            acceleration: None,
+            deceleration: S::from_f64(2.0),
+        }
+    }
+}
+
+impl<S: Scalar> Limits<S> {
+    /// The velocity nearest in direction (speed) and then in change (acceleration) to `wanted`, both in m/s.
+    pub fn apply<const D: usize>(
+        &self,
+        wanted: Vector<S, D>,
+        previous: &Vector<S, D>,
+        dt: S,
+    ) -> (Vector<S, D>, Status) {
+        let (velocity, fast) = shortened(wanted, self.speed);
+        let mut status = if fast {
+            Status::SPEED_LIMITED
+        } else {
+            Status::empty()
+        };
+        let Some(acceleration) = self.acceleration else {
+            return (velocity, status);
+        };
+        let (change, hard) = shortened(velocity - previous, acceleration * dt);
+        if !hard {
+            return (velocity, status);
+        }
+        status |= Status::ACCELERATION_LIMITED;
+        (previous + change, status)
+    }
+
+    /// The velocity one step of `dt` seconds nearer to standing still.
+    pub fn ramp_down<const D: usize>(&self, previous: &Vector<S, D>, dt: S) -> Vector<S, D> {
+        previous - shortened(*previous, self.deceleration * dt).0
+    }
+}
+
+/// The vector, at most `length` long, and whether it had to be shortened.
+fn shortened<S: Scalar, const D: usize>(v: Vector<S, D>, length: S) -> (Vector<S, D>, bool) {
+    let own = norm(&v);
+    if own > length {
+        (v * (length / own), true)
+    } else {
+        (v, false)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn speed_then_acceleration() {
+        let limits = Limits {
+            speed: 1.0,
+            acceleration: Some(10.0),
+            deceleration: 2.0,
+        };
+        let still = Vector::<f64, 2>::zeros();
+        let (v, status) = limits.apply(Vector::<f64, 2>::new(3.0, 4.0), &still, 0.001);
+        assert!((v - Vector::<f64, 2>::new(0.006, 0.008)).norm() < 1e-15);
+        assert_eq!(status, Status::SPEED_LIMITED | Status::ACCELERATION_LIMITED);
+    }
+
+    #[test]
+    fn a_ramp_ends_at_rest_and_stays() {
+        let limits = Limits::<f64>::default();
+        let mut v = Vector::<f64, 2>::new(0.3, -0.4);
+        for _ in 0..249 {
+            v = limits.ramp_down(&v, 0.001);
+            assert!(v.norm() > 0.0);
+        }
+        v = limits.ramp_down(&limits.ramp_down(&v, 0.001), 0.001);
+        assert_eq!(v, Vector::<f64, 2>::zeros());
+    }
+}

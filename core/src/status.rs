@@ -1,0 +1,36 @@
+//! What a tick says about itself.
+
+use bitflags::bitflags;
+
+/// Where the robot is, as far as obstacles go.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Region {
+    /// Outside every obstacle, soft layers included.
+    #[default]
+    Free,
+    /// In the soft layer of exactly one obstacle.
+    Soft,
+    /// Where the soft layers of two or more obstacles overlap.
+    Intersection,
+    /// In or on a hard core, safety factors included (Gamma <= 1).
+    Hard,
+}
+
+bitflags! {
+    /// Conditions a command was computed under; none set is the normal case.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Status: u16 {
+        /// An obstacle's reference point is unusable from here (g.r is not positive): the robot keeps still relative to it.
+        const REFERENCE = 1 << 0;
+        /// The speed limit bound.
+        const SPEED_LIMITED = 1 << 1;
+        /// The acceleration limit bound.
+        const ACCELERATION_LIMITED = 1 << 2;
+        /// An obstacle is older than its time to live: its axes grow as it is carried on by its velocity.
+        const EXTRAPOLATED = 1 << 3;
+        /// An obstacle is older than its hold time: it stays where it is and is not to be trusted.
+        const HELD = 1 << 4;
+        /// No fresh robot state: the command ramps to zero.
+        const LATE = 1 << 5;
+    }
+}
