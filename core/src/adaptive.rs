@@ -25,10 +25,7 @@ pub enum SteeringPolicy<S> {
 impl<S: Scalar> SteeringPolicy<S> {
     /// The paper's policy for theta_2 in rad.
     pub fn fixed(angle: S) -> Self {
-        Self::Fixed {
-            cos: angle.cos(),
-            sin: angle.sin(),
-        }
+        Self::Fixed { cos: angle.cos(), sin: angle.sin() }
     }
 }
 
@@ -147,11 +144,7 @@ fn fade<S: Scalar, const D: usize>(o: &Sample<S, D>) -> S {
 }
 
 /// The direction of the flow in the tangent plane, shorter than one where there is hardly any.
-fn along_flow<S: Scalar, const D: usize>(
-    u: &Vector<S, D>,
-    nominal: S,
-    o: &Sample<S, D>,
-) -> Vector<S, D> {
+fn along_flow<S: Scalar, const D: usize>(u: &Vector<S, D>, nominal: S, o: &Sample<S, D>) -> Vector<S, D> {
     let t = u - o.normal * u.dot(&o.normal) + side(&o.normal) * (S::from_f64(SIDE) * nominal);
     t / norm(&t).max(S::from_f64(FULL) * nominal)
 }
@@ -163,11 +156,7 @@ fn side<S: Scalar, const D: usize>(n: &Vector<S, D>) -> Vector<S, D> {
         (t[0], t[1]) = (-n[1], n[0]);
     } else {
         let (one, two) = (S::from_f64(1.0 / 3.0), S::from_f64(2.0 / 3.0));
-        (t[0], t[1], t[2]) = (
-            two * n[2] - two * n[1],
-            two * n[0] - one * n[2],
-            one * n[1] - two * n[0],
-        );
+        (t[0], t[1], t[2]) = (two * n[2] - two * n[1], two * n[0] - one * n[2], one * n[1] - two * n[0]);
     }
     t
 }

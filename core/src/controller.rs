@@ -3,9 +3,7 @@
 use crate::adaptive::{adapt, is_soft};
 use crate::modulation::modulate;
 use crate::table::Surroundings;
-use crate::{
-    Ageing, Limits, Motion, Region, Scalar, Status, SteeringPolicy, Table, Vector, in_range,
-};
+use crate::{Ageing, Limits, Motion, Region, Scalar, Status, SteeringPolicy, Table, Vector, in_range};
 
 /// How obstacles bend the motion, and what the robot may be asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,11 +62,7 @@ impl<S: Scalar> Settings<S> {
             SteeringPolicy::Fixed { cos, sin } => cos.is_finite() && sin.is_finite(),
             SteeringPolicy::WithFlow { beta } => from_zero(beta, 10.0),
         };
-        let Ageing {
-            time_to_live,
-            growth,
-            hold,
-        } = self.ageing;
+        let Ageing { time_to_live, growth, hold } = self.ageing;
         let ageing = from_zero(time_to_live, 3600.0)
             && from_zero(growth, 10.0)
             && from_zero(hold, 3600.0)
@@ -77,14 +71,8 @@ impl<S: Scalar> Settings<S> {
         check(from_zero(self.gain, 10.0), SettingsError::Gain)?;
         check(steering, SettingsError::Steering)?;
         check(above_zero(self.limits.speed, 100.0), SettingsError::Speed)?;
-        check(
-            self.limits.acceleration.is_none_or(|a| above_zero(a, 1e4)),
-            SettingsError::Acceleration,
-        )?;
-        check(
-            above_zero(self.limits.deceleration, 1e4),
-            SettingsError::Deceleration,
-        )?;
+        check(self.limits.acceleration.is_none_or(|a| above_zero(a, 1e4)), SettingsError::Acceleration)?;
+        check(above_zero(self.limits.deceleration, 1e4), SettingsError::Deceleration)?;
         check(ageing, SettingsError::Ageing)
     }
 }
@@ -152,48 +140,26 @@ pub struct Controller<S: Scalar, const D: usize, const CAP: usize> {
 impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
     /// A controller at rest, without obstacles. `settings` are taken as they are: [`Settings::check`] those that come from outside.
     pub fn new(motion: Motion<S, D>, settings: Settings<S>) -> Self {
-        Self {
-            motion,
-            settings,
-            table: Table::new(),
-            previous: Vector::zeros(),
-        }
+        Self { motion, settings, table: Table::new(), previous: Vector::zeros() }
     }
 
     /// One step of `dt` seconds: the velocity to drive with from now on, and time passes for the obstacles.
     pub fn tick(&mut self, state: &RobotState<S, D>, dt: S) -> Command<S, D> {
         let stages = self.evaluate(state);
-        let (velocity, limited) = self
-            .settings
-            .limits
-            .apply(stages.adapted, &self.previous, dt);
+        let (velocity, limited) = self.settings.limits.apply(stages.adapted, &self.previous, dt);
         let status = stages.status | limited | self.table.status(&self.settings.ageing);
         self.pass(velocity, dt);
-        Command {
-            velocity,
-            gamma: stages.gamma,
-            nearest: stages.nearest,
-            region: stages.region,
-            status,
-        }
+        Command { velocity, gamma: stages.gamma, nearest: stages.nearest, region: stages.region, status }
     }
 
     /// One step without a fresh state: from the last command towards rest, within the deceleration limit. `last` is where the robot was
     /// last known to be.
     pub fn tick_late(&mut self, last: &RobotState<S, D>, dt: S) -> Command<S, D> {
-        let around = self
-            .table
-            .surroundings(last.position(), self.settings.deformable);
+        let around = self.table.surroundings(last.position(), self.settings.deformable);
         let velocity = self.settings.limits.ramp_down(&self.previous, dt);
         let status = Status::LATE | self.table.status(&self.settings.ageing);
         self.pass(velocity, dt);
-        Command {
-            velocity,
-            gamma: around.gamma,
-            nearest: around.nearest,
-            region: region(&around),
-            status,
-        }
+        Command { velocity, gamma: around.gamma, nearest: around.nearest, region: region(&around), status }
     }
 
     /// All stages that depend on the position alone; nothing changes.
@@ -202,18 +168,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         let nominal = self.motion.velocity(x);
         let around = self.table.surroundings(x, self.settings.deformable);
         let (modulated, unusable) = modulate(&nominal, &around.samples);
-        let adapted = adapt(
-            &self.settings.steering,
-            self.settings.gain,
-            &nominal,
-            modulated,
-            &around.samples,
-        );
-        let status = if unusable {
-            Status::REFERENCE
-        } else {
-            Status::empty()
-        };
+        let adapted = adapt(&self.settings.steering, self.settings.gain, &nominal, modulated, &around.samples);
+        let status = if unusable { Status::REFERENCE } else { Status::empty() };
         Stages {
             nominal,
             modulated,

@@ -37,9 +37,7 @@ pub(crate) fn in_range<S: Scalar, const D: usize>(v: &Vector<S, D>) -> bool {
 }
 
 /// Is every entry zero?
-pub(crate) fn is_zero<S: Scalar, const R: usize, const C: usize>(
-    m: &nalgebra::SMatrix<S, R, C>,
-) -> bool {
+pub(crate) fn is_zero<S: Scalar, const R: usize, const C: usize>(m: &nalgebra::SMatrix<S, R, C>) -> bool {
     m.iter().all(|x| *x == S::zero())
 }
 

@@ -16,11 +16,7 @@ pub struct Limits<S> {
 impl<S: Scalar> Default for Limits<S> {
     /// 0.5 m/s, no acceleration limit, 2 m/s^2.
     fn default() -> Self {
-        Self {
-            speed: S::from_f64(0.5),
-            acceleration: None,
-            deceleration: S::from_f64(2.0),
-        }
+        Self { speed: S::from_f64(0.5), acceleration: None, deceleration: S::from_f64(2.0) }
     }
 }
 
@@ -33,11 +29,7 @@ impl<S: Scalar> Limits<S> {
         dt: S,
     ) -> (Vector<S, D>, Status) {
         let (velocity, fast) = shortened(wanted, self.speed);
-        let mut status = if fast {
-            Status::SPEED_LIMITED
-        } else {
-            Status::empty()
-        };
+        let mut status = if fast { Status::SPEED_LIMITED } else { Status::empty() };
         let Some(acceleration) = self.acceleration else {
             return (velocity, status);
         };
@@ -58,11 +50,7 @@ impl<S: Scalar> Limits<S> {
 /// The vector, at most `length` long, and whether it had to be shortened.
 fn shortened<S: Scalar, const D: usize>(v: Vector<S, D>, length: S) -> (Vector<S, D>, bool) {
     let own = norm(&v);
-    if own > length {
-        (v * (length / own), true)
-    } else {
-        (v, false)
-    }
+    if own > length { (v * (length / own), true) } else { (v, false) }
 }
 
 #[cfg(test)]
@@ -71,11 +59,7 @@ mod tests {
 
     #[test]
     fn speed_then_acceleration() {
-        let limits = Limits {
-            speed: 1.0,
-            acceleration: Some(10.0),
-            deceleration: 2.0,
-        };
+        let limits = Limits { speed: 1.0, acceleration: Some(10.0), deceleration: 2.0 };
         let still = Vector::<f64, 2>::zeros();
         let (v, status) = limits.apply(Vector::<f64, 2>::new(3.0, 4.0), &still, 0.001);
         assert!((v - Vector::<f64, 2>::new(0.006, 0.008)).norm() < 1e-15);

@@ -111,51 +111,22 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// # Errors
     /// The first field that is out of its range, as [`ObstacleError`] states it.
     pub fn new(spec: ObstacleSpec<S, D>) -> Result<Self, ObstacleError> {
-        let within = |v: &Vector<S, D>, low: f64, high: f64| {
-            v.iter()
-                .all(|x| *x >= S::from_f64(low) && *x <= S::from_f64(high))
-        };
+        let within =
+            |v: &Vector<S, D>, low: f64, high: f64| v.iter().all(|x| *x >= S::from_f64(low) && *x <= S::from_f64(high));
         let check = |ok: bool, error: ObstacleError| if ok { Ok(()) } else { Err(error) };
         let max_speed = S::from_f64(MAX_SPEED);
         check(in_range(&spec.center), ObstacleError::Center)?;
-        check(
-            rotation::is_rotation(&spec.rotation),
-            ObstacleError::Rotation,
-        )?;
+        check(rotation::is_rotation(&spec.rotation), ObstacleError::Rotation)?;
         check(within(&spec.axes, MIN_AXIS, RANGE), ObstacleError::Axes)?;
-        check(
-            within(&spec.soft_ratio, 1.0, 100.0),
-            ObstacleError::SoftRatio,
-        )?;
+        check(within(&spec.soft_ratio, 1.0, 100.0), ObstacleError::SoftRatio)?;
         check(within(&spec.margin, 1.0, 100.0), ObstacleError::Margin)?;
-        check(
-            (1..=MAX_CURVATURE).contains(&spec.curvature),
-            ObstacleError::Curvature,
-        )?;
-        check(
-            spec.velocity.iter().all(|v| v.abs() <= max_speed),
-            ObstacleError::Velocity,
-        )?;
-        check(
-            rotation::is_spin(&spec.spin, max_speed),
-            ObstacleError::Spin,
-        )?;
+        check((1..=MAX_CURVATURE).contains(&spec.curvature), ObstacleError::Curvature)?;
+        check(spec.velocity.iter().all(|v| v.abs() <= max_speed), ObstacleError::Velocity)?;
+        check(rotation::is_spin(&spec.spin, max_speed), ObstacleError::Spin)?;
         let core = spec.axes.map(|a| S::one() / a);
-        check(
-            level(&spec.reference, &core, spec.curvature) < S::one(),
-            ObstacleError::Reference,
-        )?;
-        let soft = spec
-            .axes
-            .component_mul(&spec.soft_ratio)
-            .map(|b| S::one() / b);
-        let mut obstacle = Self {
-            spec,
-            growth: S::zero(),
-            growing: S::zero(),
-            hard: core,
-            soft,
-        };
+        check(level(&spec.reference, &core, spec.curvature) < S::one(), ObstacleError::Reference)?;
+        let soft = spec.axes.component_mul(&spec.soft_ratio).map(|b| S::one() / b);
+        let mut obstacle = Self { spec, growth: S::zero(), growing: S::zero(), hard: core, soft };
         obstacle.grow(S::zero(), S::zero());
         Ok(obstacle)
     }
@@ -199,11 +170,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         }
         let gradient = self.gradient_at(&q);
         let length = norm(&gradient);
-        let normal = if length > S::zero() {
-            gradient / length
-        } else {
-            Vector::zeros()
-        };
+        let normal = if length > S::zero() { gradient / length } else { Vector::zeros() };
         let sample = Sample {
             gamma,
             gamma_soft: level(&q, &self.soft, self.spec.curvature),
@@ -258,12 +225,10 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
 /// sum_i |q_i inverse_i|^2p
 fn level<S: Scalar, const D: usize>(q: &Vector<S, D>, inverse: &Vector<S, D>, p: u8) -> S {
-    q.iter()
-        .zip(inverse.iter())
-        .fold(S::zero(), |sum, (q, inverse)| {
-            let u = *q * *inverse;
-            sum + (u * u).powi(p)
-        })
+    q.iter().zip(inverse.iter()).fold(S::zero(), |sum, (q, inverse)| {
+        let u = *q * *inverse;
+        sum + (u * u).powi(p)
+    })
 }
 
 /// An obstacle as it looks from one point.
@@ -303,90 +268,18 @@ mod tests {
     #[test]
     fn each_bad_field_is_named() {
         let cases: [(ObstacleSpec<f64, 2>, ObstacleError); 12] = [
-            (
-                ObstacleSpec {
-                    center: Vector::<f64, 2>::new(f64::NAN, 0.0),
-                    ..spec()
-                },
-                ObstacleError::Center,
-            ),
-            (
-                ObstacleSpec {
-                    center: Vector::<f64, 2>::new(1001.0, 0.0),
-                    ..spec()
-                },
-                ObstacleError::Center,
-            ),
-            (
-                ObstacleSpec {
-                    rotation: Matrix::zeros(),
-                    ..spec()
-                },
-                ObstacleError::Rotation,
-            ),
-            (
-                ObstacleSpec {
-                    rotation: Matrix::<f64, 2>::new(1.0, 0.0, 0.0, -1.0),
-                    ..spec()
-                },
-                ObstacleError::Rotation,
-            ),
-            (
-                ObstacleSpec {
-                    axes: Vector::<f64, 2>::new(0.1, 0.0),
-                    ..spec()
-                },
-                ObstacleError::Axes,
-            ),
-            (
-                ObstacleSpec {
-                    axes: Vector::<f64, 2>::new(-0.1, 0.1),
-                    ..spec()
-                },
-                ObstacleError::Axes,
-            ),
-            (
-                ObstacleSpec {
-                    soft_ratio: Vector::<f64, 2>::new(1.0, 0.9),
-                    ..spec()
-                },
-                ObstacleError::SoftRatio,
-            ),
-            (
-                ObstacleSpec {
-                    margin: Vector::<f64, 2>::new(0.9, 1.0),
-                    ..spec()
-                },
-                ObstacleError::Margin,
-            ),
-            (
-                ObstacleSpec {
-                    curvature: 0,
-                    ..spec()
-                },
-                ObstacleError::Curvature,
-            ),
-            (
-                ObstacleSpec {
-                    reference: Vector::<f64, 2>::new(0.0, 0.05),
-                    ..spec()
-                },
-                ObstacleError::Reference,
-            ),
-            (
-                ObstacleSpec {
-                    velocity: Vector::<f64, 2>::new(f64::INFINITY, 0.0),
-                    ..spec()
-                },
-                ObstacleError::Velocity,
-            ),
-            (
-                ObstacleSpec {
-                    spin: Matrix::identity(),
-                    ..spec()
-                },
-                ObstacleError::Spin,
-            ),
+            (ObstacleSpec { center: Vector::<f64, 2>::new(f64::NAN, 0.0), ..spec() }, ObstacleError::Center),
+            (ObstacleSpec { center: Vector::<f64, 2>::new(1001.0, 0.0), ..spec() }, ObstacleError::Center),
+            (ObstacleSpec { rotation: Matrix::zeros(), ..spec() }, ObstacleError::Rotation),
+            (ObstacleSpec { rotation: Matrix::<f64, 2>::new(1.0, 0.0, 0.0, -1.0), ..spec() }, ObstacleError::Rotation),
+            (ObstacleSpec { axes: Vector::<f64, 2>::new(0.1, 0.0), ..spec() }, ObstacleError::Axes),
+            (ObstacleSpec { axes: Vector::<f64, 2>::new(-0.1, 0.1), ..spec() }, ObstacleError::Axes),
+            (ObstacleSpec { soft_ratio: Vector::<f64, 2>::new(1.0, 0.9), ..spec() }, ObstacleError::SoftRatio),
+            (ObstacleSpec { margin: Vector::<f64, 2>::new(0.9, 1.0), ..spec() }, ObstacleError::Margin),
+            (ObstacleSpec { curvature: 0, ..spec() }, ObstacleError::Curvature),
+            (ObstacleSpec { reference: Vector::<f64, 2>::new(0.0, 0.05), ..spec() }, ObstacleError::Reference),
+            (ObstacleSpec { velocity: Vector::<f64, 2>::new(f64::INFINITY, 0.0), ..spec() }, ObstacleError::Velocity),
+            (ObstacleSpec { spin: Matrix::identity(), ..spec() }, ObstacleError::Spin),
         ];
         for (bad, error) in cases {
             assert_eq!(Obstacle::new(bad), Err(error));

@@ -17,11 +17,7 @@ pub struct Ageing<S> {
 impl<S: Scalar> Default for Ageing<S> {
     /// 0.2 s, 0.02 m/s, 1 s.
     fn default() -> Self {
-        Self {
-            time_to_live: S::from_f64(0.2),
-            growth: S::from_f64(0.02),
-            hold: S::one(),
-        }
+        Self { time_to_live: S::from_f64(0.2), growth: S::from_f64(0.02), hold: S::one() }
     }
 }
 
@@ -72,10 +68,7 @@ pub struct Table<S: Scalar, const D: usize, const CAP: usize> {
 impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     /// An empty table.
     pub fn new() -> Self {
-        Self {
-            entries: heapless::Vec::new(),
-            revision: 0,
-        }
+        Self { entries: heapless::Vec::new(), revision: 0 }
     }
 
     /// Puts an obstacle in, or in the place of the one with the same identifier. `age` is how many seconds ago it was seen as
@@ -83,12 +76,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     ///
     /// # Errors
     /// [`TableFull`]; then nothing has changed.
-    pub fn upsert(
-        &mut self,
-        id: u16,
-        mut obstacle: Obstacle<S, D>,
-        age: S,
-    ) -> Result<(), TableFull> {
+    pub fn upsert(&mut self, id: u16, mut obstacle: Obstacle<S, D>, age: S) -> Result<(), TableFull> {
         if age > S::zero() {
             obstacle.advance(age);
         }
@@ -169,16 +157,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     }
 
     /// All obstacles as they look from x. With `deformable` false every soft layer is ignored.
-    pub(crate) fn surroundings(
-        &self,
-        x: &Vector<S, D>,
-        deformable: bool,
-    ) -> Surroundings<S, D, CAP> {
-        let mut around = Surroundings {
-            samples: heapless::Vec::new(),
-            gamma: S::MAX,
-            nearest: None,
-        };
+    pub(crate) fn surroundings(&self, x: &Vector<S, D>, deformable: bool) -> Surroundings<S, D, CAP> {
+        let mut around = Surroundings { samples: heapless::Vec::new(), gamma: S::MAX, nearest: None };
         for entry in &self.entries {
             let (gamma, sample) = entry.obstacle.sample(x);
             if gamma < around.gamma {
@@ -212,11 +192,7 @@ mod tests {
 
     fn moving() -> Obstacle<f64, 2> {
         let velocity = Vector::<f64, 2>::new(0.1, 0.0);
-        Obstacle::new(ObstacleSpec {
-            velocity,
-            ..ObstacleSpec::default()
-        })
-        .unwrap()
+        Obstacle::new(ObstacleSpec { velocity, ..ObstacleSpec::default() }).unwrap()
     }
 
     #[test]

@@ -67,11 +67,7 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
         if *p != p.transpose() || !positive_definite(p, rounding(p)) {
             return Err(CertificateError::Lyapunov);
         }
-        match self
-            .components()
-            .iter()
-            .position(|c| !decreases(&c.a, p, rate))
-        {
+        match self.components().iter().position(|c| !decreases(&c.a, p, rate)) {
             None => Ok(()),
             Some(k) => Err(CertificateError::Component(k)),
         }
@@ -82,10 +78,7 @@ impl<S: Scalar, const D: usize> Certified<LpvDs<S, D>> {
     /// The guaranteed rate of convergence, found by bisection between 0 and the largest rate any component could have.
     /// Some thousands of operations: not for the tick.
     pub fn certificate(&self) -> Certificate<S> {
-        let mut found = Certificate {
-            rate: S::MAX,
-            slowest: 0,
-        };
+        let mut found = Certificate { rate: S::MAX, slowest: 0 };
         for (k, c) in self.components().iter().enumerate() {
             let (mut low, mut high) = (S::zero(), S::from_f64(1.0));
             while decreases(&c.a, self.lyapunov(), high) && high < S::from_f64(1e6) {
@@ -93,17 +86,10 @@ impl<S: Scalar, const D: usize> Certified<LpvDs<S, D>> {
             }
             for _ in 0..20 {
                 let middle = (low + high) * S::from_f64(0.5);
-                if decreases(&c.a, self.lyapunov(), middle) {
-                    low = middle
-                } else {
-                    high = middle
-                }
+                if decreases(&c.a, self.lyapunov(), middle) { low = middle } else { high = middle }
             }
             if low < found.rate {
-                found = Certificate {
-                    rate: low,
-                    slowest: k,
-                };
+                found = Certificate { rate: low, slowest: k };
             }
         }
         found
@@ -131,16 +117,13 @@ fn positive_definite<S: Scalar, const D: usize>(m: &Matrix<S, D>, shift: S) -> b
     let mut l = Matrix::<S, D>::zeros();
     let mut pivots = [S::zero(); D];
     for j in 0..D {
-        let pivot = (0..j).fold(m[(j, j)] - shift, |s, k| {
-            s - l[(j, k)] * l[(j, k)] * pivots[k]
-        });
+        let pivot = (0..j).fold(m[(j, j)] - shift, |s, k| s - l[(j, k)] * l[(j, k)] * pivots[k]);
         if !(pivot > S::zero() && pivot.is_finite()) {
             return false;
         }
         pivots[j] = pivot;
         for i in j + 1..D {
-            l[(i, j)] =
-                (0..j).fold(m[(i, j)], |s, k| s - l[(i, k)] * l[(j, k)] * pivots[k]) / pivot;
+            l[(i, j)] = (0..j).fold(m[(i, j)], |s, k| s - l[(i, k)] * l[(j, k)] * pivots[k]) / pivot;
         }
     }
     true

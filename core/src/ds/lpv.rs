@@ -61,10 +61,7 @@ pub enum ModelField {
 
 impl ModelError {
     pub(crate) fn of(field: ModelField) -> Self {
-        Self {
-            field,
-            component: None,
-        }
+        Self { field, component: None }
     }
 }
 
@@ -101,16 +98,9 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
             } else {
                 continue;
             };
-            return Err(ModelError {
-                field: fault,
-                component: Some(k),
-            });
+            return Err(ModelError { field: fault, component: Some(k) });
         }
-        Ok(Self {
-            attractor,
-            lyapunov,
-            components,
-        })
+        Ok(Self { attractor, lyapunov, components })
     }
 
     /// f(x), m/s. Zero at the attractor, finite for x within [`RANGE`](crate::RANGE).

@@ -1,0 +1,123 @@
+//! Obstacles.
+
+use super::{corner, finite, flat, framed, padded, vector, zero_in_the_plane};
+use crate::message::{DeviceError, Field, Obstacle};
+use pliant_core::obstacle::ObstacleError;
+use pliant_core::{Matrix, ObstacleSpec, Scalar, Vector, rotation};
+
+/// An obstacle that was checked, from a [`ToDevice::Upsert`](crate::ToDevice::Upsert).
+///
+/// In two dimensions centre, reference point and velocity have no z, and rotation and angular velocity are about z. Of
+/// axes, soft ratio and margin the third is not looked at: what the plane sees of an ellipsoid on it is the first two.
+///
+/// ```
+/// use pliant_protocol::convert::obstacle;
+/// use pliant_protocol::message::{DeviceError, Field, Obstacle};
+///
+/// let ball = Obstacle { center: [0.2, 0.21, 0.0], ..Obstacle::default() };
+/// assert!(obstacle::<2>(&ball).is_ok() && obstacle::<3>(&ball).is_ok());
+/// let raised = Obstacle { center: [0.2, 0.21, 0.1], ..ball };
+/// assert_eq!(obstacle::<2>(&raised), Err(DeviceError::Dimension));
+/// let hollow = Obstacle { soft_ratio: [0.9; 3], ..ball };
+/// assert_eq!(obstacle::<3>(&hollow), Err(DeviceError::OutOfRange(Field::SoftRatio)));
+/// ```
+///
+/// # Errors
+///
+/// A number is not finite, something lies in the third dimension where there are two, or a field is out of the range
+/// that [`ObstacleError`] states.
+pub fn obstacle<const D: usize>(wire: &Obstacle) -> Result<pliant_core::Obstacle<f32, D>, DeviceError> {
+    finite(&wire.center, Field::Center)?;
+    finite(&wire.rotation, Field::Rotation)?;
+    finite(&wire.axes, Field::Axes)?;
+    finite(&wire.soft_ratio, Field::SoftRatio)?;
+    finite(&wire.margin, Field::Margin)?;
+    finite(&wire.reference, Field::Reference)?;
+    finite(&wire.velocity, Field::Velocity)?;
+    finite(&wire.angular_velocity, Field::AngularVelocity)?;
+    let [_, x, y, _] = wire.rotation;
+    let [p, q, _] = wire.angular_velocity;
+    flat::<D>(&wire.center)?;
+    flat::<D>(&wire.reference)?;
+    flat::<D>(&wire.velocity)?;
+    zero_in_the_plane::<D>([x, y, p, q])?;
+    let rotation = rotation::spatial(wire.rotation).ok_or(DeviceError::OutOfRange(Field::Rotation))?;
+    let spec = ObstacleSpec {
+        center: vector(&wire.center),
+        rotation: corner(&rotation),
+        axes: vector(&wire.axes),
+        soft_ratio: vector(&wire.soft_ratio),
+        margin: vector(&wire.margin),
+        curvature: wire.curvature,
+        reference: vector(&wire.reference),
+        velocity: vector(&wire.velocity),
+        spin: corner(&rotation::spatial_spin(&vector(&wire.angular_velocity))),
+    };
+    pliant_core::Obstacle::new(spec).map_err(|error| DeviceError::OutOfRange(error.into()))
+}
+
+impl From<ObstacleError> for Field {
+    fn from(error: ObstacleError) -> Self {
+        match error {
+            ObstacleError::Center => Self::Center,
+            ObstacleError::Rotation => Self::Rotation,
+            ObstacleError::Axes => Self::Axes,
+            ObstacleError::SoftRatio => Self::SoftRatio,
+            ObstacleError::Margin => Self::Margin,
+            ObstacleError::Curvature => Self::Curvature,
+            ObstacleError::Reference => Self::Reference,
+            ObstacleError::Velocity => Self::Velocity,
+            ObstacleError::Spin => Self::AngularVelocity,
+        }
+    }
+}
+
+/// Of two or three dimensions, and so is the obstacle that comes back from it.
+impl<S: Scalar, const D: usize> From<&ObstacleSpec<S, D>> for Obstacle {
+    fn from(core: &ObstacleSpec<S, D>) -> Self {
+        let spin = framed(&core.spin);
+        let mut rotation = framed(&core.rotation);
+        if D == 2 {
+            rotation[(2, 2)] = 1.0;
+        }
+        Self {
+            center: padded(&core.center),
+            rotation: quaternion(&rotation),
+            axes: padded(&core.axes),
+            soft_ratio: padded(&core.soft_ratio),
+            margin: padded(&core.margin),
+            curvature: core.curvature,
+            reference: padded(&core.reference),
+            velocity: padded(&core.velocity),
+            angular_velocity: padded(&Vector::<f64, 3>::new(spin[(2, 1)], spin[(0, 2)], spin[(1, 0)])),
+        }
+    }
+}
+
+impl Default for Obstacle {
+    fn default() -> Self {
+        Self::from(&ObstacleSpec::<f32, 3>::default())
+    }
+}
+
+/// The unit quaternion w, x, y, z of a rotation, with w >= 0 (Shepperd's method: the largest of the four is found first, so
+/// that the division by it is harmless).
+fn quaternion(m: &Matrix<f64, 3>) -> [f32; 4] {
+    let (xx, yy, zz) = (m[(0, 0)], m[(1, 1)], m[(2, 2)]);
+    let (x, y, z) = (m[(2, 1)] - m[(1, 2)], m[(0, 2)] - m[(2, 0)], m[(1, 0)] - m[(0, 1)]);
+    let (xy, yz, zx) = (m[(1, 0)] + m[(0, 1)], m[(2, 1)] + m[(1, 2)], m[(0, 2)] + m[(2, 0)]);
+    let trace = xx + yy + zz;
+    // Each is 4 times its own largest element times (w, x, y, z).
+    let scaled = if trace >= xx && trace >= yy && trace >= zz {
+        [1.0 + trace, x, y, z]
+    } else if xx >= yy && xx >= zz {
+        [x, 1.0 + xx - yy - zz, xy, zx]
+    } else if yy >= zz {
+        [y, xy, 1.0 + yy - xx - zz, yz]
+    } else {
+        [z, zx, yz, 1.0 + zz - xx - yy]
+    };
+    let length = Scalar::sqrt(scaled.iter().fold(0.0, |sum, q| sum + q * q));
+    let length = if scaled[0] < 0.0 { -length } else { length };
+    scaled.map(|q| (q / length) as f32)
+}
