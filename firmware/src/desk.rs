@@ -87,17 +87,17 @@ impl Desk {
             Err(error) => return self.undecoded(error),
         };
         self.frames = self.frames.saturating_add(1);
+        control.with(Control::heard);
         // An emergency stop is obeyed from anyone, in any order.
         if message == ToDevice::Stop {
             let _ = self.arrivals.arrived(sequence);
             return Some(control.with(|c| {
-                c.heard();
                 c.stop(StopReason::Requested);
                 ack(c, sequence)
             }));
         }
         if let ToDevice::Hello { schema } = message {
-            return Some(self.hello(sequence, schema, control));
+            return Some(self.hello(sequence, schema));
         }
         match self.arrivals.arrived(sequence) {
             Arrival::Next => {}
@@ -120,10 +120,9 @@ impl Desk {
         Some(frame)
     }
 
-    fn hello(&mut self, sequence: u16, schema: u64, control: &mut impl Locked) -> ToHost {
+    fn hello(&mut self, sequence: u16, schema: u64) -> ToHost {
         self.arrivals.restart(sequence);
         self.greeted = schema == SCHEMA;
-        control.with(Control::heard);
         let name = self.identity.board.get(..message::BOARD_MAX).unwrap_or(self.identity.board);
         ToHost::Hello {
             schema: SCHEMA,
@@ -154,7 +153,6 @@ impl Desk {
     fn serve(&mut self, of: u16, message: ToDevice, control: &mut impl Locked) -> Result<Option<ToHost>, DeviceError> {
         let mut act = |work: &mut dyn FnMut(&mut Control) -> Result<(), DeviceError>| {
             control.with(|c| {
-                c.heard();
                 work(c)?;
                 Ok(Some(ack(c, of)))
             })
@@ -163,12 +161,8 @@ impl Desk {
             ToDevice::State { stamp, position } => {
                 let state = self.state(&position).inspect_err(|_| {
                     self.rejected_states = self.rejected_states.saturating_add(1);
-                    control.with(Control::heard);
                 })?;
-                control.with(|c| {
-                    c.heard();
-                    c.state(state, of, stamp)
-                })
+                control.with(|c| c.state(state, of, stamp))
             }
             ToDevice::Upsert { id, stamp, obstacle } => {
                 let mut obstacle = Some(self.obstacle(&obstacle)?);
@@ -243,10 +237,7 @@ impl Desk {
             rejected_states: self.rejected_states,
             stack_used: self.gauges.stack_used,
             worst_tick_us: self.gauges.worst_tick_us,
-            ..control.with(|c| {
-                c.heard();
-                c.counters()
-            })
+            ..control.with(|c| c.counters())
         }
     }
 }
