@@ -1,1 +1,12 @@
-//! placeholder
+//! The host side of Pliant, as a library: what a user does, a module each.
+#![forbid(unsafe_code)]
+
+pub mod bridge;
+pub mod cli;
+pub mod error;
+pub mod eval;
+pub mod learn;
+pub mod model;
+pub mod plot;
+pub mod scene;
+pub mod sim;

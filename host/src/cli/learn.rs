@@ -1,0 +1,68 @@
+//! `pliant learn`
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use serde_json::json;
+
+use super::{Finished, print_json, progress};
+use crate::error::Outcome;
+use crate::learn::{Options, Unit, learn};
+
+/// Options of `pliant learn`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Args {
+    /// Demonstrations of one skill: .mat (LASA), .csv with header t,x,y[,z], folders of them.
+    #[arg(required = true, value_name = "DEMO")]
+    demos: Vec<PathBuf>,
+    /// Where to write the model (NAME.toml in the working folder, by the first demonstration's name, if not given).
+    #[arg(short, long, value_name = "MODEL.toml")]
+    out: Option<PathBuf>,
+    /// Unit of lengths in the files: mm, cm or m (.mat: cm, so that LASA handwriting is ten times its size; .csv: m).
+    #[arg(long)]
+    unit: Option<Unit>,
+    /// Number of components, 1 to 16 (chosen from 1 to 8 if not given).
+    #[arg(long, value_name = "K")]
+    components: Option<usize>,
+    /// Seed of all random choices.
+    #[arg(long, default_value_t = Options::default().seed)]
+    seed: u64,
+    /// Guaranteed rate of convergence, 1/s.
+    #[arg(long, default_value_t = Options::default().sigma)]
+    sigma: f64,
+}
+
+pub(super) fn main(args: &Args, json: bool) -> Finished {
+    let stem = args.demos.first().and_then(|p| p.file_stem()).map_or("skill".into(), |s| s.to_string_lossy().to_lowercase());
+    let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.toml")));
+    let name = out.file_stem().map_or(stem, |s| s.to_string_lossy().into_owned());
+    let options = Options {
+        name,
+        unit: args.unit,
+        components: args.components,
+        seed: args.seed,
+        sigma: args.sigma,
+        ..Options::default()
+    };
+    let bar = progress::bar(json);
+    bar.set_message("learning");
+    let begin = Instant::now();
+    let learnt = learn(&args.demos, &options, &|done| bar.set_position((done * 1000.0) as u64))?;
+    let seconds = begin.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+    learnt.model.write(&out)?;
+    let (k, q, demonstrations) = (learnt.model.component.len(), &learnt.quality, learnt.demonstrations.items().len());
+    if json {
+        print_json(&json!({
+            "name": learnt.model.name, "model": out, "dimension": learnt.model.dimension, "k": k, "demonstrations": demonstrations,
+            "rmse_m_s": q.rmse, "e_dot": q.e_dot, "dtwd_m": q.dtwd, "path_error_m": q.path_error,
+            "converged": q.converged, "rollouts": q.rollouts, "certified": true, "seconds": seconds,
+        }));
+    } else {
+        println!("{}: learnt from {demonstrations} demonstrations in {seconds:.2} s, {k} components, certified in f32 and f64", learnt.model.name);
+        println!("  velocity error {:.4} m/s, direction error {:.4}, path error {:.1} mm", q.rmse, q.e_dot, q.path_error * 1e3);
+        println!("  {} of {} rollouts from the demonstrations' starts arrive", q.converged, q.rollouts);
+        println!("  model: {}", out.display());
+    }
+    Ok(Outcome::Success)
+}

@@ -1,0 +1,88 @@
+//! The command line: a contract with scripts.
+//!
+//! Exit 0 is success, 1 that what ran failed (goal missed, core touched), 2 bad input. With `--json` stdout has one JSON object and
+//! nothing else.
+
+mod check;
+mod eval;
+mod learn;
+mod plot;
+mod progress;
+mod run;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::error::{Error, Outcome};
+use crate::scene::Scene;
+
+/// Motion among things that give: learn a skill, run it past soft obstacles on a microcontroller, watch it arrive.
+///
+/// Without a command, `pliant` runs its built-in scene on the virtual device.
+#[derive(Debug, Parser)]
+#[command(version, propagate_version = true, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Print one JSON object on stdout, all else on stderr.
+    #[arg(long, global = true)]
+    json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Drive a simulated robot through a scene with a device's velocities (the built-in scene if none is given).
+    Run(run::Args),
+    /// Learn a skill from demonstrations: .mat (LASA), .csv, folders of them.
+    Learn(learn::Args),
+    /// Check a model's stability certificate in the precision that will run.
+    Check(check::Args),
+    /// Evaluate the velocity at the points of a CSV file.
+    Eval(eval::Args),
+    /// Draw a scene: streamlines, hard and soft regions, trajectories.
+    Plot(plot::Args),
+}
+
+/// Parses the command line, runs it, reports, and gives the exit code.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // clap prints help to stdout and mistakes to stderr, and knows which of them is exit 0 and which 2.
+            let _ = error.print();
+            return ExitCode::from(error.exit_code() as u8);
+        }
+    };
+    let json = cli.json;
+    let result = match cli.command.unwrap_or_else(|| Command::Run(run::Args::default())) {
+        Command::Run(args) => run::main(&args, json),
+        Command::Learn(args) => learn::main(&args, json),
+        Command::Check(args) => check::main(&args, json),
+        Command::Eval(args) => eval::main(&args, json),
+        Command::Plot(args) => plot::main(&args, json),
+    };
+    crate::error::report(result, json)
+}
+
+/// What a command ends with: its exit code, or why it could not run.
+type Finished = Result<Outcome, Error>;
+
+/// The scene of a file, or the built-in one.
+fn scene(path: Option<&Path>) -> Result<Scene, Error> {
+    Ok(match path {
+        Some(path) => Scene::load(path)?,
+        None => Scene::builtin()?,
+    })
+}
+
+/// Prints the one JSON object.
+fn print_json(value: &serde_json::Value) {
+    println!("{value:#}");
+}
+
+/// A number for JSON, which has no infinity.
+fn finite(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
+}

@@ -1,0 +1,161 @@
+//! `pliant run`
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use serde_json::json;
+
+use super::{Finished, finite, print_json, progress};
+use crate::bridge::Device;
+use crate::error::{Error, Outcome};
+use crate::plot;
+use crate::scene::Scene;
+use crate::sim::{RunOptions, Runs, run_scene};
+
+/// Options of `pliant run`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Args {
+    /// Scene file; the built-in scene if not given.
+    scene: Option<PathBuf>,
+    /// virtual, qemu, qemu-serial, serial:PATH[@BAUD] or udp:HOST:PORT
+    #[arg(long, default_value = "virtual")]
+    device: Device,
+    /// One tick a robot state, as fast as it goes and the same every time, instead of 1 kHz real time.
+    #[arg(long)]
+    stepped: bool,
+    /// The robot that is driven.
+    #[arg(long, value_enum, default_value = "point")]
+    robot: Robot,
+    /// Give up after this many seconds from a start (the scene's timeout if not given).
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    duration: Option<f64>,
+    /// Draw no figure.
+    #[arg(long)]
+    headless: bool,
+}
+
+impl Default for Args {
+    fn default() -> Self {
+        let (device, robot) = (Device::Virtual, Robot::Point);
+        Self { scene: None, device, stepped: false, robot, duration: None, headless: false }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Robot {
+    /// A point with a first-order lag of 10 ms.
+    Point,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(s) if s > 0.0 && s <= 86_400.0 => Ok(s),
+        _ => Err("a number of seconds above 0, at most 86400".into()),
+    }
+}
+
+/// Where figures go, below the working folder.
+const FIGURES: &str = "out";
+
+pub(super) fn main(args: &Args, json: bool) -> Finished {
+    let Robot::Point = args.robot;
+    let scene = super::scene(args.scene.as_deref())?;
+    let mut session = args.device.open()?;
+    let options = RunOptions { stepped: args.stepped, duration: args.duration, slow_link: args.device.is_slow() };
+    let bar = progress::bar(json);
+    let starts = scene.starts().len();
+    let runs = run_scene(&mut session, &scene, &options, &mut |i, time, distance| {
+        let whole = (scene.starts()[i] - scene.attractor()).norm();
+        let done = (i as f64 + 1.0 - (distance / whole).clamp(0.0, 1.0)) / starts as f64;
+        bar.set_position((done * 1000.0) as u64);
+        bar.set_message(format!("start {} of {starts}: {time:.1} s, {distance:.3} m to go", i + 1));
+    })?;
+    bar.finish_and_clear();
+    let board = session.info().board.clone();
+    drop(session);
+    let figure = if args.headless { None } else { Some(draw(&scene, &runs)?) };
+    if json {
+        print_json(&as_json(&scene, args, &board, &runs, figure.as_deref()));
+    } else {
+        print_table(&scene, args, &board, &runs, figure.as_deref());
+    }
+    Ok(if runs.reached() && runs.untouched() { Outcome::Success } else { Outcome::Failed })
+}
+
+/// The figure of a run, as SVG and PNG; the path of the PNG.
+fn draw(scene: &Scene, runs: &Runs) -> Result<PathBuf, Error> {
+    let figure = plot::scene_figure(scene, &plot::trajectories(runs), &plot::Options::default())?;
+    let base = Path::new(FIGURES).join(scene.name());
+    figure.save(&base.with_extension("svg"))?;
+    let png = base.with_extension("png");
+    figure.save(&png)?;
+    Ok(png)
+}
+
+fn as_json(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Option<&Path>) -> serde_json::Value {
+    let each: Vec<_> = runs
+        .runs
+        .iter()
+        .map(|r| {
+            json!({
+                "start": r.start.as_slice()[..scene.dimension()],
+                "reached": r.reached,
+                "ticks": r.ticks,
+                "missed": r.missed,
+                "min_gamma": finite(r.min_gamma),
+                "nearest": r.nearest,
+                "time_to_goal_s": r.time_to_goal,
+                "velocities_crc32c": format!("{:08x}", r.checksum),
+            })
+        })
+        .collect();
+    json!({
+        "scene": scene.name(),
+        "device": args.device.to_string(),
+        "board": board,
+        "stepped": args.stepped,
+        "reached": runs.reached(),
+        "ticks": runs.runs.iter().map(|r| r.ticks).sum::<u64>(),
+        "missed": runs.runs.iter().map(|r| r.missed).sum::<u64>(),
+        "min_gamma": finite(runs.min_gamma()),
+        "time_to_goal_s": runs.time_to_goal(),
+        "rtt_us": runs.rtt_us,
+        "figure": figure,
+        "runs": each,
+    })
+}
+
+fn print_table(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Option<&Path>) {
+    let pace = if args.stepped { "stepped" } else { "1 kHz" };
+    println!("{} on {} ({board}, {pace}): {} obstacles\n", scene.name(), args.device, scene.obstacles().len());
+    println!("  start                     reached  time s  min Gamma  nearest              ticks  missed");
+    for r in &runs.runs {
+        let coordinates: Vec<_> = r.start.iter().take(scene.dimension()).map(|x| format!("{x:.3}")).collect();
+        let time = r.time_to_goal.map_or("-".into(), |t| format!("{t:.2}"));
+        let gamma = if r.min_gamma.is_finite() { format!("{:.3}", r.min_gamma) } else { "-".into() };
+        println!(
+            "  {:<24}  {:<7}  {time:>6}  {gamma:>9}  {:<18}  {:>6}  {:>6}",
+            format!("({})", coordinates.join(", ")),
+            if r.reached { "yes" } else { "NO" },
+            r.nearest.as_deref().unwrap_or("-"),
+            r.ticks,
+            r.missed
+        );
+    }
+    let rtt = runs.rtt_us;
+    println!("\n  state to command: median {:.0} us, 99 % {:.0} us, longest {:.0} us", rtt.p50, rtt.p99, rtt.max);
+    match (runs.reached(), runs.untouched()) {
+        (true, true) => println!("  every start reached the goal and no hard core was touched"),
+        (reached, untouched) => {
+            if !reached {
+                println!("  FAILED: the goal was not reached in time from every start");
+            }
+            if !untouched {
+                println!("  FAILED: a hard core was touched (Gamma <= 1)");
+            }
+        }
+    }
+    if let Some(figure) = figure {
+        println!("  figure: {} (and .svg beside it)", figure.display());
+    }
+}

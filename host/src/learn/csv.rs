@@ -1,0 +1,189 @@
+//! Demonstrations from CSV: a header `t,x,y` or `t,x,y,z`, with an optional column `demo`.
+//!
+//! With a `demo` column, a new demonstration starts where its value changes. Without one, it starts where time returns
+//! to the file's first time or before it. Any other step back in time is an error.
+
+use super::demonstration::Demonstration;
+use super::error::LearnError;
+use nalgebra::DVector;
+
+const HEADER: &str = "t,x,y or t,x,y,z in any order, with an optional column demo";
+
+/// Rows of one demonstration, as they are read.
+#[derive(Default)]
+struct Rows {
+    t: Vec<f64>,
+    x: Vec<DVector<f64>>,
+}
+
+/// Reads the demonstrations of one file. `name` is used in messages and in [`Demonstration::name`].
+pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Demonstration>, LearnError> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(bytes);
+    let fail = |line: u64, problem: String, allowed| LearnError::Line { file: name.to_owned(), line, problem, allowed };
+    let broken = |e: csv::Error| {
+        let line = e.position().map_or(1, csv::Position::line);
+        fail(line, "the line is not UTF-8 text".into(), "comma-separated numbers")
+    };
+
+    let header = reader.headers().map_err(broken)?.clone();
+    let columns =
+        Columns::find(&header).ok_or_else(|| fail(1, format!("the header is `{}`", join(&header)), HEADER))?;
+
+    let mut all: Vec<Rows> = Vec::new();
+    let mut current = Rows::default();
+    let mut label: Option<String> = None;
+    let mut start = f64::NAN;
+    for record in reader.records() {
+        let record = record.map_err(broken)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        if record.len() != header.len() {
+            let problem = format!("it has {} fields and the header {}", record.len(), header.len());
+            return Err(fail(line, problem, "one field a column"));
+        }
+        let number = |i: usize| -> Result<f64, LearnError> {
+            let text = &record[i];
+            let column = &header[i];
+            let value: f64 = text
+                .parse()
+                .map_err(|_| fail(line, format!("column {column}: `{text}` is not a number"), "a decimal number"))?;
+            if !value.is_finite() {
+                return Err(fail(line, format!("column {column} is {text}"), "a finite number"));
+            }
+            Ok(value)
+        };
+        let t = number(columns.t)?;
+        let mut x = DVector::zeros(columns.axes.len());
+        for (c, &i) in x.iter_mut().zip(&columns.axes) {
+            *c = number(i)?;
+        }
+
+        let starts = match (columns.demo, current.t.last()) {
+            (Some(i), _) => {
+                let new = label.as_deref() != Some(&record[i]);
+                label = Some(record[i].to_owned());
+                new
+            }
+            (None, Some(&last)) => t < last && t <= start,
+            (None, None) => false,
+        };
+        if starts && !current.t.is_empty() {
+            all.push(std::mem::take(&mut current));
+        }
+        if all.is_empty() && current.t.is_empty() {
+            start = t;
+        }
+        if let (Some(&last), Some(before)) = (current.t.last(), current.x.last()) {
+            if t < last {
+                return Err(fail(line, format!("time goes back from {last} to {t}"), "time that increases"));
+            }
+            if t == last && *before != x {
+                let problem = format!("a second position at time {t}");
+                return Err(fail(line, problem, "one position a time"));
+            }
+        }
+        current.t.push(t);
+        current.x.push(x);
+    }
+    all.push(current);
+
+    let count = all.len();
+    all.into_iter()
+        .enumerate()
+        .map(|(i, rows)| {
+            let title = if count == 1 { name.to_owned() } else { format!("{name}, demonstration {}", i + 1) };
+            Demonstration::new(title, rows.t, rows.x, None)
+        })
+        .collect()
+}
+
+/// Where each quantity is.
+struct Columns {
+    t: usize,
+    axes: Vec<usize>,
+    demo: Option<usize>,
+}
+
+impl Columns {
+    fn find(header: &csv::StringRecord) -> Option<Self> {
+        let at = |name: &str| header.iter().position(|h| h == name);
+        let mut axes = vec![at("x")?, at("y")?];
+        axes.extend(at("z"));
+        let (t, demo) = (at("t")?, at("demo"));
+        // Nothing else: an unknown column is more likely a misspelt one than one to ignore.
+        (header.len() == 1 + axes.len() + usize::from(demo.is_some())).then_some(Self { t, axes, demo })
+    }
+}
+
+fn join(header: &csv::StringRecord) -> String {
+    let text = header.iter().collect::<Vec<_>>().join(",");
+    text.chars().take(60).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn refused(text: &str) -> String {
+        read("a.csv", text.as_bytes()).expect_err("must be refused").to_string()
+    }
+
+    #[test]
+    fn one_file_one_demonstration() {
+        let all = read("a.csv", b"t,x,y\r\n0,1,2\r\n0.1, 1.5,3\n\n0.2,2,4\n").expect("valid");
+        assert_eq!(all.len(), 1);
+        assert_eq!(all[0].t, [0.0, 0.1, 0.2]);
+        assert_eq!(all[0].x[1].as_slice(), [1.5, 3.0]);
+        assert!((all[0].v[1][0] - 5.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn three_dimensions_in_any_order_with_a_byte_order_mark() {
+        let all = read("a.csv", "\u{feff}z,y,x,t\n3,2,1,0\n4,2,1,1\n".as_bytes()).expect("valid");
+        assert_eq!(all[0].x[0].as_slice(), [1.0, 2.0, 3.0]);
+    }
+
+    #[test]
+    fn time_that_returns_to_the_start_begins_a_demonstration() {
+        let all = read("a.csv", b"t,x,y\n0,1,0\n1,0,0\n0,2,0\n1,0,0\n").expect("valid");
+        assert_eq!(all.len(), 2);
+        assert_eq!(all[1].name, "a.csv, demonstration 2");
+        assert!(refused("t,x,y\n0,1,0\n1,0,0\n0.5,2,0\n").contains("line 4: time goes back from 1 to 0.5"));
+    }
+
+    #[test]
+    fn demo_column_separates() {
+        let all = read("a.csv", b"demo,t,x,y\na,0,1,0\na,1,0,0\nb,5,2,0\nb,6,0,0\n").expect("valid");
+        assert_eq!(all.len(), 2);
+        assert!(refused("demo,t,x,y\na,1,1,0\na,0,0,0\n").contains("line 3: time goes back"));
+    }
+
+    #[test]
+    fn each_mistake_has_its_sentence() {
+        assert!(refused("a,b\n1,2\n").starts_with("a.csv, line 1: the header is `a,b`"));
+        assert!(refused("t,x,y,speed\n1,2,3,4\n").contains("line 1: the header"));
+        assert!(refused("").contains("line 1: the header is ``"));
+        assert!(refused("t,x,y\n").contains("a.csv: it is empty"));
+        assert!(refused("t,x,y\n0,1,2\n").contains("one sample"));
+        assert!(refused("t,x,y\n0,1,2\n1,one,2\n").contains("line 3: column x: `one` is not a number"));
+        assert!(refused("t,x,y\n0,1,2\n1,NaN,2\n").contains("line 3: column x is NaN"));
+        assert!(refused("t,x,y\n0,1,2\n1,2\n").contains("line 3: it has 2 fields and the header 3"));
+        assert!(refused("t,x,y\n0,1,2\n0,2,2\n").contains("line 3: a second position at time 0"));
+    }
+
+    proptest! {
+        #[test]
+        fn never_panics(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+            let _ = read("a.csv", &bytes);
+            let mut with_header = b"t,x,y\n0,0,0\n".to_vec();
+            with_header.extend(&bytes);
+            let _ = read("a.csv", &with_header);
+        }
+
+        #[test]
+        fn never_panics_on_nearly_right_text(text in "([0-9.eE+-]{0,6}[,\n]?){0,40}") {
+            let _ = read("a.csv", format!("t,x,y\n{text}").as_bytes());
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Everything that can be wrong with demonstrations, each said in one sentence.
+
+use std::io;
+
+/// Why demonstrations could not be read or a skill could not be learnt.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum LearnError {
+    /// The file or folder cannot be opened.
+    #[error("{file}: cannot be read: {source}")]
+    Unreadable {
+        /// Path as given.
+        file: String,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The name of the file says nothing about its format.
+    #[error("{file}: unknown format; demonstrations are .mat or .csv files, or folders of them")]
+    UnknownFormat {
+        /// Path as given.
+        file: String,
+    },
+    /// A folder without demonstrations, or no path at all.
+    #[error("{file}: no demonstrations here; .mat or .csv files are needed")]
+    NoDemonstrations {
+        /// Path as given.
+        file: String,
+    },
+    /// The bytes are not a MATLAB file this reader understands.
+    #[error("{file}: not a readable MATLAB file: {reason}")]
+    NotMat {
+        /// Path as given.
+        file: String,
+        /// What is wrong with the bytes.
+        reason: super::mat::MatError,
+    },
+    /// A MATLAB file, but not one of demonstrations.
+    #[error("{file}: `{field}` {problem}; allowed is {allowed}")]
+    MatShape {
+        /// Path as given.
+        file: String,
+        /// Variable or field, such as `demos{3}.pos`.
+        field: String,
+        /// What is wrong with it.
+        problem: String,
+        /// What it should be.
+        allowed: &'static str,
+    },
+    /// A line of a CSV file is wrong.
+    #[error("{file}, line {line}: {problem}; allowed is {allowed}")]
+    Line {
+        /// Path as given.
+        file: String,
+        /// Line, from 1.
+        line: u64,
+        /// What is wrong.
+        problem: String,
+        /// What it should be.
+        allowed: &'static str,
+    },
+    /// A whole demonstration is unusable.
+    #[error("{demonstration}: {problem}; allowed is {allowed}")]
+    Demonstration {
+        /// Where it comes from: file and number.
+        demonstration: String,
+        /// What is wrong.
+        problem: String,
+        /// What it should be.
+        allowed: &'static str,
+    },
+    /// The demonstrations do not lead to one place.
+    #[error(
+        "{demonstration} ends {distance:.4} m from the mean end point; \
+         allowed is 5 % of the extent, {allowed:.4} m, for one skill has one attractor"
+    )]
+    EndsApart {
+        /// The demonstration that ends farthest from the others.
+        demonstration: String,
+        /// Its distance from the mean end, in metres.
+        distance: f64,
+        /// The largest distance allowed, in metres.
+        allowed: f64,
+    },
+    /// An option is out of its range.
+    #[error("{option} = {value}; allowed is {allowed}")]
+    Option {
+        /// Name of the option.
+        option: &'static str,
+        /// The value given.
+        value: String,
+        /// Its range.
+        allowed: &'static str,
+    },
+    /// The convex programme found no motion.
+    #[error("no stable motion could be fitted: {reason}")]
+    Fit {
+        /// What the solver said.
+        reason: String,
+    },
+    /// The fitted numbers do not make a model.
+    #[error("the learnt model is not usable: {0}")]
+    Model(#[from] crate::model::FieldError),
+}

@@ -1,0 +1,349 @@
+//! Learning a skill from demonstrations.
+//!
+//! Files are read and checked ([`read`]), brought to one attractor, and normalised. For each number of components a
+//! Gaussian mixture is fitted, then P and A_k under the certificate; the number that follows the demonstrations
+//! best for its size is kept ([`learn`]). The result is a [`ModelFile`], rounded to f32 so that every machine runs the
+//! same numbers, with its certificate checked on them.
+
+mod cone;
+pub mod csv;
+pub mod demonstration;
+mod error;
+pub mod evaluate;
+pub mod fit;
+pub mod gmm;
+pub mod lasa;
+pub mod mat;
+#[cfg(test)]
+mod mat_writer;
+pub mod quality;
+mod smoothing;
+
+pub use demonstration::{Demonstration, Demonstrations, Unit};
+pub use error::LearnError;
+pub use quality::Quality;
+
+use crate::model::{ComponentFile, FORMAT, ModelFile};
+use evaluate::Motion;
+use gmm::{MAX_COMPONENTS, Mixture, Samples};
+use nalgebra::{SMatrix, SVector};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Most components tried when their number is not given.
+const MOST_TRIED: usize = 8;
+/// Samples used for fitting; more add time and little else.
+const FIT_SAMPLES: usize = 1000;
+
+/// How to learn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Name of the skill in the model file.
+    pub name: String,
+    /// Unit of lengths in the files. Without it: centimetres for .mat (LASA handwriting at ten times its size),
+    /// metres for .csv.
+    pub unit: Option<Unit>,
+    /// Number of components, 1 to 16; chosen from 1 to 8 where not given.
+    pub components: Option<usize>,
+    /// Seed of all random choices.
+    pub seed: u64,
+    /// Guaranteed rate of convergence, 1/s.
+    pub sigma: f64,
+    /// Weight of the direction of motion against position (in extents) when samples are grouped.
+    pub direction_weight: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { name: "skill".into(), unit: None, components: None, seed: 1, sigma: 0.1, direction_weight: 1.0 }
+    }
+}
+
+/// A learnt skill.
+#[derive(Debug, Clone)]
+pub struct Learnt {
+    /// The model, certified in f32 and f64.
+    pub model: ModelFile,
+    /// How well it follows the demonstrations.
+    pub quality: Quality,
+    /// Quality for each number of components tried.
+    pub tried: Vec<(usize, Quality)>,
+    /// What it was learnt from, in metres and ending at the attractor.
+    pub demonstrations: Demonstrations,
+}
+
+/// Reads the demonstrations of one skill from files and folders of them, in metres.
+pub fn read(paths: &[PathBuf], unit: Option<Unit>) -> Result<Demonstrations, LearnError> {
+    let mut items = Vec::new();
+    for path in paths {
+        let file = path.display().to_string();
+        if path.is_dir() {
+            let unreadable = |source| LearnError::Unreadable { file: file.clone(), source };
+            let mut inside = Vec::new();
+            for entry in fs::read_dir(path).map_err(unreadable)? {
+                let entry = entry.map_err(unreadable)?.path();
+                if matches!(extension(&entry).as_str(), "mat" | "csv") {
+                    inside.push(entry);
+                }
+            }
+            if inside.is_empty() {
+                return Err(LearnError::NoDemonstrations { file });
+            }
+            inside.sort();
+            for entry in inside {
+                items.extend(read_file(&entry, unit)?);
+            }
+        } else {
+            items.extend(read_file(path, unit)?);
+        }
+    }
+    Demonstrations::new(items)
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+}
+
+fn read_file(path: &Path, unit: Option<Unit>) -> Result<Vec<Demonstration>, LearnError> {
+    type Reader = fn(&str, &[u8]) -> Result<Vec<Demonstration>, LearnError>;
+    let file = path.display().to_string();
+    let (reader, default): (Reader, Unit) = match extension(path).as_str() {
+        "mat" => (lasa::read, Unit::Cm),
+        "csv" => (csv::read, Unit::M),
+        _ => return Err(LearnError::UnknownFormat { file }),
+    };
+    let bytes = fs::read(path).map_err(|source| LearnError::Unreadable { file: file.clone(), source })?;
+    let factor = unit.unwrap_or(default).metres();
+    Ok(reader(&file, &bytes)?.into_iter().map(|d| d.scaled(factor)).collect())
+}
+
+/// Learns a skill from files and folders. `progress` is told the part that is done, 0 to 1.
+pub fn learn(paths: &[PathBuf], options: &Options, progress: &dyn Fn(f64)) -> Result<Learnt, LearnError> {
+    learn_from(read(paths, options.unit)?, options, progress)
+}
+
+/// Learns a skill from demonstrations.
+pub fn learn_from(
+    demonstrations: Demonstrations,
+    options: &Options,
+    progress: &dyn Fn(f64),
+) -> Result<Learnt, LearnError> {
+    let refuse = |option, value: String, allowed| Err(LearnError::Option { option, value, allowed });
+    if let Some(k) = options.components
+        && !(1..=MAX_COMPONENTS).contains(&k)
+    {
+        return refuse("components", k.to_string(), "1 to 16");
+    }
+    if !(0.0..=10.0).contains(&options.sigma) {
+        return refuse("sigma", options.sigma.to_string(), "0 to 10 1/s");
+    }
+    if !(0.0..=10.0).contains(&options.direction_weight) {
+        return refuse("direction_weight", options.direction_weight.to_string(), "0 to 10");
+    }
+    match demonstrations.dimension() {
+        2 => learn_in::<2>(demonstrations, options, progress),
+        _ => learn_in::<3>(demonstrations, options, progress),
+    }
+}
+
+/// The units in which fitting is well conditioned: the extent is one, and so is the root-mean-square speed.
+struct Scale<const D: usize> {
+    attractor: SVector<f64, D>,
+    length: f64,
+    speed: f64,
+}
+
+impl<const D: usize> Scale<D> {
+    fn of(demonstrations: &Demonstrations, all: &Samples<D>) -> Self {
+        let squares: f64 = all.v.iter().map(|v| v.norm_squared()).sum();
+        let speed = (squares / all.v.len().max(1) as f64).sqrt();
+        let attractor = SVector::from_column_slice(demonstrations.attractor().as_slice());
+        // A recording with velocities of zero throughout still has a scale.
+        Self { attractor, length: demonstrations.extent(), speed: if speed > 0.0 { speed } else { 1.0 } }
+    }
+
+    fn normalise(&self, samples: &Samples<D>) -> Samples<D> {
+        Samples {
+            x: samples.x.iter().map(|x| (x - self.attractor) / self.length).collect(),
+            v: samples.v.iter().map(|v| v / self.speed).collect(),
+        }
+    }
+}
+
+fn fixed<const D: usize>(all: &[nalgebra::DVector<f64>]) -> Vec<SVector<f64, D>> {
+    all.iter().map(|p| SVector::from_column_slice(p.as_slice())).collect()
+}
+
+/// Every demonstration's samples, thinned to about `limit` in all.
+fn samples<const D: usize>(demonstrations: &Demonstrations, limit: usize) -> Samples<D> {
+    let stride = demonstrations.samples().div_ceil(limit).max(1);
+    let mut out = Samples { x: vec![], v: vec![] };
+    for item in demonstrations.items() {
+        out.x.extend(fixed::<D>(&item.x).into_iter().step_by(stride));
+        out.v.extend(fixed::<D>(&item.v).into_iter().step_by(stride));
+    }
+    out
+}
+
+fn learn_in<const D: usize>(
+    demonstrations: Demonstrations,
+    options: &Options,
+    progress: &dyn Fn(f64),
+) -> Result<Learnt, LearnError> {
+    let all = samples::<D>(&demonstrations, usize::MAX);
+    let paths: Vec<_> = demonstrations.items().iter().map(|d| (fixed::<D>(&d.x), d.duration())).collect();
+    let scale = Scale::of(&demonstrations, &all);
+    let normal = scale.normalise(&samples(&demonstrations, FIT_SAMPLES));
+
+    let candidates = match options.components {
+        Some(k) => k..=k,
+        None => 1..=MOST_TRIED.min(normal.x.len() / (D + 1)).max(1),
+    };
+    let count = candidates.clone().count() as f64;
+    let mut tried = Vec::new();
+    let mut best: Option<(f64, ModelFile, Quality)> = None;
+    let mut failure = String::from("no mixture fits the samples");
+    for (i, k) in candidates.enumerate() {
+        progress(i as f64 / count);
+        let Some(mixture) = gmm::fit(&normal, k, options.direction_weight, options.seed) else { continue };
+        let model = match model_of(&normal, &mixture, &scale, options) {
+            Ok(model) => model,
+            Err(reason) => {
+                failure = reason;
+                continue;
+            }
+        };
+        let Some(motion) = motion_of::<D>(&model) else { continue };
+        let quality = quality::measure(&motion, &all, &paths, demonstrations.extent());
+        tried.push((mixture.len(), quality));
+        let score = score(&quality, mixture.len(), demonstrations.extent(), scale.speed);
+        if best.as_ref().is_none_or(|b| score < b.0) {
+            best = Some((score, model, quality));
+        }
+    }
+    let Some((_, mut model, quality)) = best else { return Err(LearnError::Fit { reason: failure }) };
+    model.learnt = Some(provenance(options, &demonstrations, &quality));
+    model.validate()?;
+    progress(1.0);
+    Ok(Learnt { model, quality, tried, demonstrations })
+}
+
+/// What a number of components is judged by: errors relative to the skill, with a price a component, and a rollout that
+/// does not arrive counts more than any error.
+fn score(quality: &Quality, components: usize, extent: f64, speed: f64) -> f64 {
+    let stranded = (quality.rollouts - quality.converged) as f64;
+    let error = quality.rmse / speed + 5.0 * quality.path_error / extent;
+    10.0 * stranded + error * (1.0 + 0.03 * components as f64)
+}
+
+/// Fits P and A_k, rounds to f32 and checks the certificate on the rounded numbers.
+fn model_of<const D: usize>(
+    normal: &Samples<D>,
+    mixture: &Mixture<D>,
+    scale: &Scale<D>,
+    options: &Options,
+) -> Result<ModelFile, String> {
+    let sigma = options.sigma * scale.length / scale.speed;
+    let mut strictness = sigma;
+    let mut fit = fit::fit(normal, mixture, sigma)?;
+    for _ in 0..6 {
+        let model = denormalise(&fit, mixture, scale, options);
+        if model.certified::<f32>() && model.certified::<f64>() {
+            return Ok(model);
+        }
+        // Rounding used up the margin: ask for more.
+        strictness += 0.05;
+        fit::repair(&mut fit, strictness).ok_or("the inequality cannot be met")?;
+    }
+    Err("the certificate does not survive rounding to f32".into())
+}
+
+fn denormalise<const D: usize>(
+    fit: &fit::Stable<D>,
+    mixture: &Mixture<D>,
+    scale: &Scale<D>,
+    options: &Options,
+) -> ModelFile {
+    let rows = |m: &SMatrix<f64, D, D>| {
+        (0..D).map(|r| (0..D).map(|c| rounded(m[(r, c)])).collect()).collect::<Vec<Vec<f64>>>()
+    };
+    let vector = |v: &SVector<f64, D>| v.iter().map(|&c| rounded(c)).collect::<Vec<f64>>();
+    let component = mixture
+        .components()
+        .zip(&fit.a)
+        .map(|((prior, mean, covariance), a)| ComponentFile {
+            prior: rounded(prior),
+            mean: vector(&(mean * scale.length + scale.attractor)),
+            covariance: rows(&(covariance * scale.length.powi(2))),
+            a: rows(&(a * (scale.speed / scale.length))),
+        })
+        .collect();
+    ModelFile {
+        format: FORMAT,
+        name: options.name.clone(),
+        dimension: D,
+        attractor: vector(&scale.attractor),
+        lyapunov: rows(&((fit.p + fit.p.transpose()) * 0.5)),
+        component,
+        learnt: None,
+    }
+}
+
+/// The shortest decimal that is the nearest f32: short to read, and the same on every machine.
+fn rounded(x: f64) -> f64 {
+    let nearest = x as f32 + 0.0;
+    format!("{nearest:e}").parse().unwrap_or(f64::from(nearest))
+}
+
+/// The motion of a model in f64, for the dimension D; `None` where the model is of another dimension or not valid.
+pub fn motion_of<const D: usize>(model: &ModelFile) -> Option<Motion<D>> {
+    if model.dimension != D || model.validate().is_err() {
+        return None;
+    }
+    let vector = |v: &[f64]| SVector::<f64, D>::from_column_slice(v);
+    let matrix = |m: &[Vec<f64>]| SMatrix::<f64, D, D>::from_fn(|r, c| m[r][c]);
+    let parts = &model.component;
+    let mixture = Mixture::new(
+        parts.iter().map(|c| c.prior).collect(),
+        parts.iter().map(|c| vector(&c.mean)).collect(),
+        parts.iter().map(|c| matrix(&c.covariance)).collect(),
+    )?;
+    let a = parts.iter().map(|c| matrix(&c.a)).collect();
+    Some(Motion { attractor: vector(&model.attractor), mixture, a })
+}
+
+/// How well any model follows any demonstrations; `None` where their dimensions differ.
+pub fn evaluate(model: &ModelFile, demonstrations: &Demonstrations) -> Option<Quality> {
+    fn inside<const D: usize>(model: &ModelFile, demonstrations: &Demonstrations) -> Option<Quality> {
+        let paths: Vec<_> = demonstrations.items().iter().map(|d| (fixed::<D>(&d.x), d.duration())).collect();
+        let all = samples(demonstrations, usize::MAX);
+        Some(quality::measure(&motion_of::<D>(model)?, &all, &paths, demonstrations.extent()))
+    }
+    match (model.dimension, demonstrations.dimension()) {
+        (2, 2) => inside::<2>(model, demonstrations),
+        (3, 3) => inside::<3>(model, demonstrations),
+        _ => None,
+    }
+}
+
+fn provenance(options: &Options, demonstrations: &Demonstrations, quality: &Quality) -> toml::Table {
+    let float = |x: f64| toml::Value::Float((x * 1e6).round() / 1e6);
+    let integer = |n: usize| toml::Value::Integer(n as i64);
+    [
+        ("demonstrations", integer(demonstrations.items().len())),
+        ("samples", integer(demonstrations.samples())),
+        ("sigma", float(options.sigma)),
+        ("seed", toml::Value::Integer(options.seed as i64)),
+        ("rmse", float(quality.rmse)),
+        ("e_dot", float(quality.e_dot)),
+        ("dtwd", float(quality.dtwd)),
+        ("path_error", float(quality.path_error)),
+        ("converged", integer(quality.converged)),
+    ]
+    .into_iter()
+    .map(|(key, value)| (key.to_owned(), value))
+    .collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,141 @@
+//! How well a motion follows the demonstrations.
+
+use super::evaluate::Motion;
+use super::gmm::Samples;
+use nalgebra::SVector;
+
+/// Points that paths are resampled to before they are compared.
+const POINTS: usize = 200;
+/// Points that the alignment may run ahead or behind.
+const WINDOW: usize = 20;
+/// A rollout has arrived within this part of the extent.
+const NEAR: f64 = 0.01;
+
+/// Figures of merit, all in SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quality {
+    /// Root mean square of the velocity error at the samples, m/s.
+    pub rmse: f64,
+    /// Mean of 1 - cos of the angle between demonstrated and learnt velocity.
+    pub e_dot: f64,
+    /// Dynamic time warping distance, m: the sum of point distances along the best alignment of a demonstration and the
+    /// rollout from its start, each as 200 points at equal steps of length; the mean over demonstrations.
+    pub dtwd: f64,
+    /// The same alignment, as the mean distance of aligned points, m.
+    pub path_error: f64,
+    /// Rollouts that came within one percent of the extent of the attractor.
+    pub converged: usize,
+    /// All rollouts: one a demonstration.
+    pub rollouts: usize,
+}
+
+/// Compares a motion with demonstrations, each a list of positions and a duration.
+pub fn measure<const D: usize>(
+    motion: &Motion<D>,
+    samples: &Samples<D>,
+    demonstrations: &[(Vec<SVector<f64, D>>, f64)],
+    extent: f64,
+) -> Quality {
+    let (mut squares, mut turn, mut moving) = (0.0, 0.0, 0usize);
+    for (x, v) in samples.x.iter().zip(&samples.v) {
+        let f = motion.velocity(x);
+        squares += (f - v).norm_squared();
+        let size = f.norm() * v.norm();
+        // Where one of them stands still there is no direction to compare.
+        if size > 0.0 {
+            turn += 1.0 - f.dot(v) / size;
+            moving += 1;
+        }
+    }
+    let (mut dtwd, mut path_error, mut converged) = (0.0, 0.0, 0);
+    for (path, duration) in demonstrations {
+        // Long enough for what is slow, and not for what stands.
+        let (rollout, arrived) = motion.rollout(&path[0], duration / 400.0, 10.0 * duration, NEAR * extent);
+        converged += usize::from(arrived);
+        let (sum, mean) = warping_distance(&resample(path), &resample(&rollout));
+        dtwd += sum;
+        path_error += mean;
+    }
+    let n = demonstrations.len().max(1) as f64;
+    Quality {
+        rmse: (squares / samples.x.len().max(1) as f64).sqrt(),
+        e_dot: turn / moving.max(1) as f64,
+        dtwd: dtwd / n,
+        path_error: path_error / n,
+        converged,
+        rollouts: demonstrations.len(),
+    }
+}
+
+/// Points at equal steps along a path.
+fn resample<const D: usize>(path: &[SVector<f64, D>]) -> Vec<SVector<f64, D>> {
+    let mut length = vec![0.0];
+    for pair in path.windows(2) {
+        length.push(length[length.len() - 1] + (pair[1] - pair[0]).norm());
+    }
+    let total = length[length.len() - 1];
+    let mut i = 0;
+    (0..POINTS)
+        .map(|j| {
+            let at = total * j as f64 / (POINTS - 1) as f64;
+            while i + 2 < path.len() && length[i + 1] < at {
+                i += 1;
+            }
+            let Some(next) = path.get(i + 1) else { return path[i] };
+            let step = length[i + 1] - length[i];
+            let part = if step > 0.0 { ((at - length[i]) / step).clamp(0.0, 1.0) } else { 0.0 };
+            path[i] + (next - path[i]) * part
+        })
+        .collect()
+}
+
+/// Sum and mean of distances along the best alignment within the window.
+fn warping_distance<const D: usize>(a: &[SVector<f64, D>], b: &[SVector<f64, D>]) -> (f64, f64) {
+    let mut row = vec![(f64::INFINITY, 0usize); b.len()];
+    for (i, p) in a.iter().enumerate() {
+        let before = row.clone();
+        row.fill((f64::INFINITY, 0));
+        for j in i.saturating_sub(WINDOW)..(i + WINDOW + 1).min(b.len()) {
+            let mut best = if i == 0 && j == 0 { (0.0, 0) } else { (f64::INFINITY, 0) };
+            let mut offer = |o: (f64, usize)| {
+                if o.0 < best.0 {
+                    best = o;
+                }
+            };
+            if j > 0 {
+                offer(before[j - 1]);
+                offer(row[j - 1]);
+            }
+            if i > 0 {
+                offer(before[j]);
+            }
+            row[j] = (best.0 + (p - b[j]).norm(), best.1 + 1);
+        }
+    }
+    let (sum, pairs) = row[b.len() - 1];
+    (sum, sum / pairs.max(1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector2;
+
+    #[test]
+    fn resampling_keeps_the_ends_and_equal_steps() {
+        let path = [Vector2::new(0.0, 0.0), Vector2::new(0.1, 0.0), Vector2::new(1.0, 0.0), Vector2::new(1.0, 1.0)];
+        let even = resample(&path);
+        assert_eq!(even.len(), POINTS);
+        assert_eq!((even[0], even[POINTS - 1]), (path[0], path[3]));
+        let step = 2.0 / (POINTS - 1) as f64;
+        assert!(even.windows(2).all(|w| (w[1] - w[0]).norm() < step + 1e-12));
+    }
+
+    #[test]
+    fn parallel_lines_are_their_distance_apart() {
+        let line = |y: f64| resample(&[Vector2::new(0.0, y), Vector2::new(1.0, y)]);
+        let (sum, mean) = warping_distance(&line(0.0), &line(0.03));
+        assert!((mean - 0.03).abs() < 1e-3 && (sum - 0.03 * POINTS as f64).abs() < 0.1, "{sum} {mean}");
+        assert_eq!(warping_distance(&line(0.0), &line(0.0)).0, 0.0);
+    }
+}

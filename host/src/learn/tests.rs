@@ -1,0 +1,238 @@
+use super::*;
+use nalgebra::{DVector, Matrix2, Matrix3, Vector2, Vector3};
+use proptest::prelude::*;
+
+/// Demonstrations of dx/dt = A x from several starts, until it is at rest.
+fn linear<const D: usize>(a: SMatrix<f64, D, D>, starts: &[SVector<f64, D>]) -> Demonstrations {
+    let dt = 0.01;
+    let items = starts
+        .iter()
+        .enumerate()
+        .map(|(i, start)| {
+            let (mut t, mut x, mut v) = (vec![], vec![], vec![]);
+            let mut p = *start;
+            for j in 0..=600 {
+                t.push(f64::from(j) * dt);
+                x.push(DVector::from_column_slice(p.as_slice()));
+                v.push(DVector::from_column_slice((a * p).as_slice()));
+                let middle = p + a * p * (dt / 2.0);
+                p += a * middle * dt;
+            }
+            Demonstration::new(format!("start {i}"), t, x, Some(v)).expect("valid")
+        })
+        .collect();
+    Demonstrations::new(items).expect("all end at zero")
+}
+
+/// A curve in space with three bends, seven times, a little different each.
+fn helix() -> Demonstrations {
+    let items = (0..7)
+        .map(|i| {
+            let size = 0.3 + 0.01 * f64::from(i);
+            let at = |s: f64| {
+                let fade = (1.0 - s) * (1.0 - s);
+                DVector::from_vec(vec![
+                    size * fade * (5.0 * s).cos(),
+                    size * fade * (5.0 * s).sin(),
+                    0.4 * fade * (1.0 + 0.3 * (9.0 * s).sin()),
+                ])
+            };
+            let n = 200;
+            let t = (0..=n).map(|j| 3.0 * f64::from(j) / f64::from(n)).collect();
+            let x = (0..=n).map(|j| at(f64::from(j) / f64::from(n))).collect();
+            Demonstration::new(format!("helix {i}"), t, x, None).expect("valid")
+        })
+        .collect();
+    Demonstrations::new(items).expect("all end at zero")
+}
+
+/// Largest eigenvalue of A'P + PA + 2 sigma P over all components, of the numbers in the file.
+fn largest_eigenvalue(model: &ModelFile, sigma: f64) -> f64 {
+    let d = model.dimension;
+    let matrix = |m: &[Vec<f64>]| nalgebra::DMatrix::from_fn(d, d, |r, c| m[r][c]);
+    let p = matrix(&model.lyapunov);
+    let eigen = p.symmetric_eigenvalues();
+    assert!(eigen.min() > 0.0 && eigen.max() / eigen.min() < 1.01 * fit::MAX_CONDITION, "{eigen}");
+    model
+        .component
+        .iter()
+        .map(|c| {
+            let a = matrix(&c.a);
+            (a.transpose() * &p + &p * a + &p * (2.0 * sigma)).symmetric_eigenvalues().max()
+        })
+        .fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn learnt(demonstrations: Demonstrations, options: &Options) -> Learnt {
+    learn_from(demonstrations, options, &|_| ()).expect("learnable")
+}
+
+#[test]
+fn a_linear_system_is_recovered_in_the_plane() {
+    let a = Matrix2::new(-1.0, 2.0, -0.5, -1.5);
+    let starts = [Vector2::new(0.3, 0.4), Vector2::new(-0.4, 0.1), Vector2::new(0.2, -0.5)];
+    let options = Options { components: Some(1), ..Options::default() };
+    let found = learnt(linear(a, &starts), &options);
+    let c = &found.model.component[0];
+    assert!((Matrix2::from_fn(|r, k| c.a[r][k]) - a).norm() < 0.02, "{:?}", c.a);
+    assert!(found.quality.rmse < 5e-3 && found.quality.path_error < 5e-3, "{:?}", found.quality);
+}
+
+#[test]
+fn a_linear_system_is_recovered_in_space() {
+    let a = Matrix3::new(-1.0, 1.5, 0.0, -0.8, -1.2, 0.4, 0.2, 0.0, -1.5);
+    let starts = [Vector3::new(0.3, 0.4, 0.1), Vector3::new(-0.4, 0.1, 0.3), Vector3::new(0.2, -0.5, -0.4)];
+    let options = Options { components: Some(1), ..Options::default() };
+    let found = learnt(linear(a, &starts), &options);
+    let c = &found.model.component[0];
+    assert!((Matrix3::from_fn(|r, k| c.a[r][k]) - a).norm() < 0.03, "{:?}", c.a);
+}
+
+#[test]
+fn a_bent_motion_in_space_is_followed_and_certified() {
+    let demonstrations = helix();
+    let extent = demonstrations.extent();
+    let options = Options { components: Some(5), ..Options::default() };
+    let found = learnt(demonstrations, &options);
+    assert!(largest_eigenvalue(&found.model, 0.1) < 0.0);
+    assert_eq!(found.quality.converged, 7);
+    assert!(found.quality.path_error < 0.05 * extent, "{:?}", found.quality);
+    assert!(matches!(found.model.skill::<f32>(), Ok(crate::model::Skill::Spatial(_))));
+}
+
+#[test]
+fn the_certificate_holds_at_the_rate_asked_for() {
+    let a = Matrix2::new(-0.8, 3.0, -3.0, -0.8);
+    let starts = [Vector2::new(0.3, 0.4), Vector2::new(-0.4, 0.1)];
+    for sigma in [0.0, 0.1, 1.0] {
+        let items = linear(a, &starts);
+        let found = learnt(items, &Options { sigma, components: Some(3), ..Options::default() });
+        assert!(largest_eigenvalue(&found.model, sigma) < 0.0, "{sigma}");
+    }
+}
+
+#[test]
+fn an_unstable_motion_still_gets_a_stable_model() {
+    // Runs away from the attractor half of the time: no quadratic V falls along it.
+    let n = 200;
+    let t: Vec<f64> = (0..=n).map(|i| f64::from(i) * 0.02).collect();
+    let x = (0..=n)
+        .map(|i| {
+            let s = f64::from(i) / f64::from(n);
+            DVector::from_vec(vec![0.1 + 1.2 * s - 1.3 * s * s * s, 0.4 * (6.0 * s).sin() * (1.0 - s)])
+        })
+        .collect();
+    let one = Demonstration::new("away", t, x, None).expect("valid");
+    let found = learnt(Demonstrations::new(vec![one]).expect("one"), &Options::default());
+    assert!(largest_eigenvalue(&found.model, 0.1) < 0.0);
+    assert_eq!(found.quality.converged, 1);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_file() {
+    let options = Options { components: Some(4), ..Options::default() };
+    let once = learnt(helix(), &options).model.to_toml().expect("writes");
+    assert_eq!(once, learnt(helix(), &options).model.to_toml().expect("writes"));
+}
+
+#[test]
+fn two_samples_are_enough() {
+    let x = vec![DVector::from_vec(vec![0.3, 0.1]), DVector::from_vec(vec![0.0, 0.0])];
+    let one = Demonstration::new("short", vec![0.0, 1.0], x, None).expect("valid");
+    let found = learn_from(Demonstrations::new(vec![one]).expect("one"), &Options::default(), &|_| ());
+    let model = found.expect("learnable").model;
+    assert!(model.certified::<f32>());
+}
+
+#[test]
+fn options_out_of_range_are_named() {
+    let text = |options: Options| learn_from(helix(), &options, &|_| ()).expect_err("must be refused").to_string();
+    assert_eq!(text(Options { components: Some(17), ..Options::default() }), "components = 17; allowed is 1 to 16");
+    assert!(text(Options { sigma: -1.0, ..Options::default() }).contains("0 to 10 1/s"));
+    assert!(text(Options { sigma: f64::NAN, ..Options::default() }).contains("sigma = NaN"));
+}
+
+#[test]
+fn progress_only_grows_and_ends_at_one() {
+    let seen = std::cell::RefCell::new(vec![]);
+    let a = Matrix2::new(-1.0, 0.0, 0.0, -1.0);
+    learn_from(linear(a, &[Vector2::new(0.5, 0.2)]), &Options::default(), &|p| seen.borrow_mut().push(p))
+        .expect("learnable");
+    let seen = seen.into_inner();
+    assert!(seen.is_sorted() && seen.first() == Some(&0.0) && seen.last() == Some(&1.0), "{seen:?}");
+}
+
+#[test]
+fn rounding_is_to_f32_and_keeps_it() {
+    for x in [0.1, -1.0 / 3.0, 1e-12, 12345.678, 0.0, -0.0] {
+        assert_eq!(rounded(x) as f32, x as f32);
+        assert_eq!(rounded(rounded(x)).to_bits(), rounded(x).to_bits());
+    }
+    assert!(rounded(-0.0).is_sign_positive());
+}
+
+#[test]
+fn files_and_folders_are_read_in_their_units() {
+    let folder = std::env::temp_dir().join(format!("pliant-learn-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("writable");
+    let csv = folder.join("a.csv");
+    fs::write(&csv, "t,x,y\n0,400,300\n1,0,0\n").expect("writable");
+    let mat = folder.join("b.mat");
+    fs::write(&mat, mat_writer::file(&mat_writer::demos(&[2], 9, true), true)).expect("writable");
+    let start = |path: &Path, unit| read(&[path.to_owned()], unit).expect("valid").items()[0].x[0].clone();
+    assert_eq!(start(&csv, Some(Unit::Mm)).as_slice(), [0.4, 0.3]);
+    assert_eq!(start(&csv, None).as_slice(), [400.0, 300.0]);
+    assert!((start(&mat, None) - DVector::from_vec(vec![0.1, 0.1])).norm() < 1e-12);
+    assert_eq!(read(std::slice::from_ref(&folder), Some(Unit::Mm)).expect("valid").items().len(), 2);
+
+    let text = |path: PathBuf| read(&[path], None).expect_err("must be refused").to_string();
+    assert!(text(folder.join("none.csv")).contains("cannot be read"));
+    fs::write(folder.join("c.txt"), "").expect("writable");
+    assert!(text(folder.join("c.txt")).contains("unknown format"));
+    fs::create_dir_all(folder.join("empty")).expect("writable");
+    assert!(text(folder.join("empty")).contains("no demonstrations here"));
+    fs::remove_dir_all(&folder).expect("removable");
+}
+
+/// The motions of the LASA set, where somebody has it: `PLIANT_LASA=folder`.
+#[test]
+fn every_lasa_motion_is_learnt_and_certified() {
+    let Some(folder) = std::env::var_os("PLIANT_LASA") else {
+        eprintln!("PLIANT_LASA is not set: nothing tested");
+        return;
+    };
+    let mut count = 0;
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if extension(&path) != "mat" {
+            continue;
+        }
+        let found = learn(std::slice::from_ref(&path), &Options::default(), &|_| ()).expect("learnable");
+        assert!(largest_eigenvalue(&found.model, 0.1) < 0.0, "{}", path.display());
+        assert!(found.model.certified::<f32>() && found.model.certified::<f64>(), "{}", path.display());
+        assert_eq!(found.quality.converged, found.quality.rollouts, "{}", path.display());
+        count += 1;
+    }
+    assert!(count > 0, "no .mat files");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    /// Whatever is demonstrated, what is learnt is stable, on the numbers in the file.
+    #[test]
+    fn what_is_learnt_is_stable(
+        points in proptest::collection::vec((-1.0..1.0f64, -1.0..1.0f64), 3..30), scale in 0.01..10.0f64, k in 1usize..5,
+    ) {
+        let n = points.len();
+        let t = (0..=n).map(|i| 0.1 * i as f64).collect();
+        let mut x: Vec<_> = points.iter().map(|p| DVector::from_vec(vec![scale * p.0, scale * p.1])).collect();
+        x.push(DVector::zeros(2));
+        prop_assume!(x.iter().any(|p| p.norm() > 0.0));
+        let one = Demonstration::new("random", t, x, None).expect("valid");
+        let options = Options { components: Some(k), ..Options::default() };
+        let found = learn_from(Demonstrations::new(vec![one]).expect("one"), &options, &|_| ());
+        let model = found.expect("learnable").model;
+        prop_assert!(largest_eigenvalue(&model, 0.1) < 0.0);
+        prop_assert!(model.certified::<f32>());
+    }
+}

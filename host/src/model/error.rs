@@ -1,0 +1,95 @@
+//! What can be wrong with a model file.
+
+use miette::{NamedSource, SourceSpan};
+use std::io;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Why a model file could not be read, written or used.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum ModelFileError {
+    /// The file cannot be opened or is not text.
+    #[error("{file}: cannot be read: {source}")]
+    Unreadable {
+        /// Path as given.
+        file: String,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file cannot be written.
+    #[error("{file}: cannot be written: {source}")]
+    Unwritable {
+        /// Path as given.
+        file: String,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// Something in the file is wrong, at a known place.
+    #[error("{file}, line {line}: {problem}")]
+    Content {
+        /// Path as given.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong and what is allowed.
+        problem: String,
+        /// The text of the file.
+        #[source_code]
+        text: Arc<NamedSource<String>>,
+        /// The place.
+        #[label("here")]
+        at: SourceSpan,
+    },
+    /// A field of a model that is not from a file is wrong.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+    /// The model is of another dimension than asked for.
+    #[error("model `{name}` has dimension {found}; {wanted} is needed here")]
+    Dimension {
+        /// Name of the model.
+        name: String,
+        /// Its dimension.
+        found: usize,
+        /// The dimension needed.
+        wanted: usize,
+    },
+    /// The certificate does not hold.
+    #[error("model `{name}` has no valid certificate: {problem}")]
+    Certificate {
+        /// Name of the model.
+        name: String,
+        /// Which part fails.
+        problem: String,
+    },
+}
+
+impl ModelFileError {
+    pub(super) fn located(file: &str, text: &str, span: Range<usize>, problem: String) -> Self {
+        let line = 1 + text.bytes().take(span.start).filter(|&b| b == b'\n').count();
+        Self::Content {
+            file: file.to_owned(),
+            line,
+            problem,
+            text: Arc::new(NamedSource::new(file, text.to_owned()).with_language("toml")),
+            at: span.into(),
+        }
+    }
+}
+
+/// A field that is out of its range.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}`{name}` {problem}; allowed is {allowed}", place(*component))]
+pub struct FieldError {
+    /// The component it belongs to, from 0.
+    pub component: Option<usize>,
+    /// Name of the field.
+    pub name: &'static str,
+    /// What is wrong.
+    pub problem: String,
+    /// What it should be.
+    pub allowed: &'static str,
+}
+
+fn place(component: Option<usize>) -> String {
+    component.map_or_else(String::new, |k| format!("component {}: ", k + 1))
+}

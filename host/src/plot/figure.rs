@@ -1,0 +1,331 @@
+//! Axes to draw in: from metres to pixels and back, ticks, and the few SVG elements figures are made of.
+
+use std::fmt::Write as _;
+
+use nalgebra::{Point2, Vector2};
+
+/// A rectangle in data units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// Least x and y.
+    pub low: Point2<f64>,
+    /// Largest x and y.
+    pub high: Point2<f64>,
+}
+
+impl Extent {
+    /// The smallest that holds all points; none if there is no finite point.
+    pub fn around(points: impl IntoIterator<Item = Point2<f64>>) -> Option<Self> {
+        points.into_iter().filter(|p| p.x.is_finite() && p.y.is_finite()).fold(None, |extent: Option<Self>, p| {
+            let Self { low, high } = extent.unwrap_or(Self { low: p, high: p });
+            Some(Self { low: low.inf(&p), high: high.sup(&p) })
+        })
+    }
+
+    /// Larger by `share` of the longer side all around, and at least `least` wide and high.
+    pub fn padded(self, share: f64, least: f64) -> Self {
+        let size = self.high - self.low;
+        let pad = Vector2::from_element(share * size.max());
+        let missing = size.map(|s| (least - s).max(0.0)) / 2.0;
+        Self { low: self.low - pad - missing, high: self.high + pad + missing }
+    }
+
+    /// Width and height.
+    pub fn size(&self) -> Vector2<f64> {
+        self.high - self.low
+    }
+
+    /// Is a point in it?
+    pub fn holds(&self, p: &Point2<f64>) -> bool {
+        (self.low.x..=self.high.x).contains(&p.x) && (self.low.y..=self.high.y).contains(&p.y)
+    }
+}
+
+/// A plot's rectangle on the page and what it shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Axes {
+    /// Left upper corner on the page, px.
+    pub corner: Point2<f64>,
+    /// px
+    pub size: Vector2<f64>,
+    /// What is shown.
+    pub extent: Extent,
+}
+
+/// A position on the page, px.
+pub type Pixel = Point2<f64>;
+
+impl Axes {
+    /// Axes `width` pixels wide with as much height as makes both directions the same scale.
+    pub fn equal(corner: Pixel, width: f64, extent: Extent) -> Self {
+        let size = extent.size();
+        Self { corner, size: Vector2::new(width, width * size.y / size.x), extent }
+    }
+
+    /// Axes of a given size, each direction with its own scale.
+    pub fn free(corner: Pixel, size: Vector2<f64>, extent: Extent) -> Self {
+        Self { corner, size, extent }
+    }
+
+    /// Pixels a unit of x is long.
+    pub fn scale(&self) -> f64 {
+        self.size.x / self.extent.size().x
+    }
+
+    /// Where a point is on the page.
+    pub fn pixel(&self, p: &Point2<f64>) -> Pixel {
+        let share = (p - self.extent.low).component_div(&self.extent.size());
+        Point2::new(self.corner.x + share.x * self.size.x, self.corner.y + (1.0 - share.y) * self.size.y)
+    }
+
+    /// The right lower corner on the page.
+    pub fn end(&self) -> Pixel {
+        self.corner + self.size
+    }
+
+    /// Grid lines, to go under what is drawn.
+    pub fn grid(&self, svg: &mut Svg) {
+        let (x, y) = self.ticks();
+        let end = self.end();
+        for t in &x {
+            let p = self.pixel(&Point2::new(t.value, self.extent.low.y));
+            svg.line([Point2::new(p.x, self.corner.y), Point2::new(p.x, end.y)], r##"stroke="#eef0f3""##);
+        }
+        for t in &y {
+            let p = self.pixel(&Point2::new(self.extent.low.x, t.value));
+            svg.line([Point2::new(self.corner.x, p.y), Point2::new(end.x, p.y)], r##"stroke="#eef0f3""##);
+        }
+    }
+
+    /// The frame, ticks with their numbers, and the names of both directions; to go over what is drawn.
+    pub fn frame(&self, svg: &mut Svg, x_name: Option<&str>, y_name: &str) {
+        let (x, y) = self.ticks();
+        let end = self.end();
+        svg.rect(self.corner, self.size, r##"fill="none" stroke="#3a3f47""##);
+        for t in &x {
+            let p = self.pixel(&Point2::new(t.value, self.extent.low.y));
+            svg.line([p, p + Vector2::new(0.0, 4.0)], r##"stroke="#3a3f47""##);
+            if x_name.is_some() {
+                svg.text(p + Vector2::new(0.0, 17.0), Anchor::Middle, "", &t.label);
+            }
+        }
+        let mut widest = 0.0f64;
+        for t in &y {
+            let p = self.pixel(&Point2::new(self.extent.low.x, t.value));
+            svg.line([p, p - Vector2::new(4.0, 0.0)], r##"stroke="#3a3f47""##);
+            svg.text(p + Vector2::new(-7.0, 4.2), Anchor::End, "", &t.label);
+            widest = widest.max(text_width(&t.label));
+        }
+        if let Some(name) = x_name {
+            svg.text(Point2::new((self.corner.x + end.x) / 2.0, end.y + 35.0), Anchor::Middle, "", name);
+        }
+        let at = Point2::new(self.corner.x - widest - 14.0, (self.corner.y + end.y) / 2.0);
+        let turn = format!(r#"transform="rotate(-90 {:.2} {:.2})""#, at.x, at.y);
+        svg.text(at, Anchor::Middle, &turn, y_name);
+    }
+
+    /// Room that the numbers and the name of y need on the left, px.
+    pub fn left_room(extent: &Extent, height: f64) -> f64 {
+        let labels = ticks(extent.low.y, extent.high.y, height / TICK_EVERY);
+        labels.iter().map(|t| text_width(&t.label)).fold(0.0, f64::max) + 28.0
+    }
+
+    fn ticks(&self) -> (Vec<Tick>, Vec<Tick>) {
+        let Extent { low, high } = self.extent;
+        (ticks(low.x, high.x, self.size.x / TICK_EVERY), ticks(low.y, high.y, self.size.y / TICK_EVERY))
+    }
+}
+
+/// Pixels from one tick to the next, about.
+const TICK_EVERY: f64 = 62.0;
+
+/// A tick.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tick {
+    /// Where it is.
+    pub value: f64,
+    /// What is written there.
+    pub label: String,
+}
+
+/// About `wanted` ticks at round values between two ends.
+pub fn ticks(low: f64, high: f64, wanted: f64) -> Vec<Tick> {
+    let rough = (high - low) / wanted.max(1.0);
+    if !(rough > 0.0 && rough.is_finite()) {
+        return Vec::new();
+    }
+    let power = 10f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|s| *s >= rough * 0.8).unwrap_or(10.0 * power);
+    let decimals = usize::try_from(-(step * 1.001).log10().floor() as i64).unwrap_or(0);
+    let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+    (first..=last)
+        .map(|i| {
+            let value = i as f64 * step;
+            // A true minus is as wide as a plus; a hyphen is not.
+            let label = format!("{:.decimals$}", if i == 0 { 0.0 } else { value }).replace('-', "\u{2212}");
+            Tick { value, label }
+        })
+        .collect()
+}
+
+/// Which part of a text is where it is put.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    /// Its begin.
+    Start,
+    /// Its middle.
+    Middle,
+    /// Its end.
+    End,
+}
+
+/// Size of all text, px.
+pub const FONT_SIZE: f64 = 12.0;
+
+/// About how wide a text is in DejaVu Sans, px.
+pub fn text_width(text: &str) -> f64 {
+    let em = |c: char| match c {
+        'i' | 'j' | 'l' | '.' | ',' | ' ' | '\'' | 'I' | ':' => 0.31,
+        'f' | 't' | 'r' | '(' | ')' | '/' => 0.39,
+        'm' | 'w' | 'M' | 'W' | '\u{2212}' => 0.9,
+        _ => 0.62,
+    };
+    text.chars().map(em).sum::<f64>() * FONT_SIZE
+}
+
+/// SVG as it is written, element by element.
+#[derive(Clone, Debug, Default)]
+pub struct Svg {
+    body: String,
+}
+
+impl Svg {
+    /// A line from one place to another.
+    pub fn line(&mut self, [a, b]: [Pixel; 2], style: &str) {
+        let _ =
+            writeln!(self.body, r#"<line x1="{:.2}" y1="{:.2}" x2="{:.2}" y2="{:.2}" {style}/>"#, a.x, a.y, b.x, b.y);
+    }
+
+    /// A line through many places, closed or not.
+    pub fn path(&mut self, points: impl IntoIterator<Item = Pixel>, closed: bool, style: &str) {
+        let mut d = String::new();
+        for (i, p) in points.into_iter().enumerate() {
+            let _ = write!(d, "{}{:.2} {:.2}", if i == 0 { "M" } else { "L" }, p.x, p.y);
+        }
+        let end = if closed { "Z" } else { "" };
+        if !d.is_empty() {
+            let _ = writeln!(self.body, r#"<path d="{d}{end}" {style}/>"#);
+        }
+    }
+
+    /// A rectangle by its left upper corner.
+    pub fn rect(&mut self, at: Pixel, size: Vector2<f64>, style: &str) {
+        let _ = writeln!(
+            self.body,
+            r#"<rect x="{:.2}" y="{:.2}" width="{:.2}" height="{:.2}" {style}/>"#,
+            at.x, at.y, size.x, size.y
+        );
+    }
+
+    /// A circle.
+    pub fn circle(&mut self, at: Pixel, radius: f64, style: &str) {
+        let _ = writeln!(self.body, r#"<circle cx="{:.2}" cy="{:.2}" r="{radius:.2}" {style}/>"#, at.x, at.y);
+    }
+
+    /// A filled arrowhead with its point at `tip`.
+    pub fn arrowhead(&mut self, tip: Pixel, direction: &Vector2<f64>, length: f64, style: &str) {
+        let Some(d) = direction.try_normalize(1e-12) else {
+            return;
+        };
+        let side = Vector2::new(-d.y, d.x) * (length * 0.42);
+        let back = tip - d * length;
+        self.path([tip, back + side, back + d * (length * 0.22), back - side], true, style);
+    }
+
+    /// A five-pointed star.
+    pub fn star(&mut self, at: Pixel, radius: f64, style: &str) {
+        let points = (0..10).map(|i| {
+            let angle = std::f64::consts::PI * (f64::from(i) / 5.0 - 0.5);
+            let r = if i % 2 == 0 { radius } else { radius * 0.42 };
+            at + Vector2::new(angle.cos(), angle.sin()) * r
+        });
+        self.path(points, true, style);
+    }
+
+    /// A text.
+    pub fn text(&mut self, at: Pixel, anchor: Anchor, style: &str, text: &str) {
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let text = text.replace('&', "&amp;").replace('<', "&lt;");
+        let _ = writeln!(
+            self.body,
+            r#"<text x="{:.2}" y="{:.2}" text-anchor="{anchor}" {style}>{text}</text>"#,
+            at.x, at.y
+        );
+    }
+
+    /// A colour scale that runs upwards; used as `fill="url(#id)"`.
+    pub fn gradient(&mut self, id: &str, colours: &[String]) {
+        let _ = write!(self.body, r#"<linearGradient id="{id}" x1="0" y1="1" x2="0" y2="0">"#);
+        let last = colours.len().saturating_sub(1).max(1) as f64;
+        for (i, colour) in colours.iter().enumerate() {
+            let _ = write!(self.body, r#"<stop offset="{:.4}" stop-color="{colour}"/>"#, i as f64 / last);
+        }
+        self.body += "</linearGradient>\n";
+    }
+
+    /// Draws with everything outside the axes cut off. `id` is unique in the figure.
+    pub fn clipped(&mut self, id: &str, axes: &Axes, draw: impl FnOnce(&mut Self)) {
+        let _ = write!(self.body, r#"<clipPath id="{id}">"#);
+        self.rect(axes.corner, axes.size, "");
+        let _ = writeln!(self.body, r#"</clipPath><g clip-path="url(#{id})">"#);
+        draw(self);
+        self.body += "</g>\n";
+    }
+
+    /// The whole document.
+    pub fn finish(self, size: Vector2<f64>) -> String {
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w:.0}\" height=\"{h:.0}\" viewBox=\"0 0 {w:.0} {h:.0}\" \
+             font-family=\"DejaVu Sans, Verdana, sans-serif\" font-size=\"{FONT_SIZE}\" fill=\"#22262c\">\n\
+             <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{}</svg>\n",
+            self.body,
+            w = size.x,
+            h = size.y
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_within() {
+        let labels = |low, high, n| ticks(low, high, n).into_iter().map(|t| t.label).collect::<Vec<_>>();
+        assert_eq!(labels(-0.05, 0.43, 5.0), ["0.0", "0.1", "0.2", "0.3", "0.4"]);
+        assert_eq!(labels(-1.0, 1.0, 4.0), ["\u{2212}1.0", "\u{2212}0.5", "0.0", "0.5", "1.0"]);
+        assert_eq!(labels(0.0, 100.0, 5.0), ["0", "20", "40", "60", "80", "100"]);
+        assert!(ticks(1.0, 1.0, 5.0).is_empty() && ticks(f64::NAN, 1.0, 5.0).is_empty());
+    }
+
+    #[test]
+    fn equal_axes_have_one_scale_and_y_upwards() {
+        let extent = Extent { low: Point2::new(-1.0, 0.0), high: Point2::new(3.0, 2.0) };
+        let axes = Axes::equal(Point2::new(10.0, 20.0), 200.0, extent);
+        assert_eq!(axes.size, Vector2::new(200.0, 100.0));
+        assert_eq!(axes.pixel(&extent.low), Point2::new(10.0, 120.0));
+        assert_eq!(axes.pixel(&extent.high), Point2::new(210.0, 20.0));
+        assert_eq!(axes.scale(), 50.0);
+    }
+
+    #[test]
+    fn text_is_escaped() {
+        let mut svg = Svg::default();
+        svg.text(Point2::origin(), Anchor::Start, "", "a < b & c");
+        assert!(svg.finish(Vector2::new(1.0, 1.0)).contains("a &lt; b &amp; c"));
+    }
+}

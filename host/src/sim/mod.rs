@@ -1,0 +1,11 @@
+//! Driving a simulated robot through a scene with the velocities of a device.
+
+mod latency;
+mod robot;
+mod run;
+mod stepped;
+mod timed;
+
+pub use latency::Latency;
+pub use robot::PointRobot;
+pub use run::{PathPoint, Run, RunOptions, Runs, prepare, run_scene};

@@ -1,0 +1,210 @@
+//! A scene from every one of its starts.
+
+use nalgebra::Vector3;
+use pliant_protocol::message::Region;
+use pliant_protocol::{ToDevice, checksum};
+
+use super::{Latency, stepped, timed};
+use crate::bridge::session::Received;
+use crate::bridge::{BridgeError, Session, wire};
+use crate::scene::Scene;
+
+/// How often obstacles are reported, in ticks: a camera's 30 Hz.
+pub(super) const PERCEPTION_TICKS: u64 = 33;
+/// Ticks between the points of a path that are kept.
+const KEPT_TICKS: u64 = 10;
+/// A tick, s.
+pub(super) const TICK: f64 = 1e-3;
+
+/// How to run.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RunOptions {
+    /// One tick a state, as fast as it goes, instead of the device's clock.
+    pub stepped: bool,
+    /// Give up after this long, s; the scene's own timeout if not given.
+    pub duration: Option<f64>,
+    /// The link cannot carry a state a millisecond: send every tenth.
+    pub slow_link: bool,
+}
+
+/// Where the robot was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPoint {
+    /// s from the start
+    pub time: f64,
+    /// m
+    pub position: Vector3<f64>,
+    /// m/s
+    pub velocity: Vector3<f64>,
+    /// By the device.
+    pub region: Region,
+}
+
+/// One start to its end.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// m
+    pub start: Vector3<f64>,
+    /// Did it come within the goal's tolerance in time?
+    pub reached: bool,
+    /// Commands of the device that were used.
+    pub ticks: u64,
+    /// Ticks the device was due and did not compute, and milliseconds the host was late by.
+    pub missed: u64,
+    /// Least Gamma at any time, by the scene's true geometry in f64; infinite without obstacles.
+    pub min_gamma: f64,
+    /// Whose it is.
+    pub nearest: Option<String>,
+    /// s; none if the goal was not reached.
+    pub time_to_goal: Option<f64>,
+    /// Where it went, every 10 ms.
+    pub path: Vec<PathPoint>,
+    /// The bits of every velocity, in order: two devices that agree have the same checksum.
+    pub checksum: u32,
+    pub(super) round_trips: Vec<f64>,
+}
+
+/// All starts of a scene.
+#[derive(Clone, Debug)]
+pub struct Runs {
+    /// In the scene's order.
+    pub runs: Vec<Run>,
+    /// From a state sent to its command received, us.
+    pub rtt_us: Latency,
+}
+
+impl Runs {
+    /// Did every run reach the goal?
+    pub fn reached(&self) -> bool {
+        self.runs.iter().all(|r| r.reached)
+    }
+    /// Did no run touch a hard core?
+    pub fn untouched(&self) -> bool {
+        self.min_gamma() > 1.0
+    }
+    /// The least Gamma of all runs.
+    pub fn min_gamma(&self) -> f64 {
+        self.runs.iter().map(|r| r.min_gamma).fold(f64::INFINITY, f64::min)
+    }
+    /// The longest time to the goal; none if one run did not reach it.
+    pub fn time_to_goal(&self) -> Option<f64> {
+        self.runs.iter().map(|r| r.time_to_goal).try_fold(0.0, |longest, t| t.map(|t| t.max(longest)))
+    }
+}
+
+/// Uploads a scene and drives a point robot from every start. `watch` is told where the robot is: start, time (s), distance to go (m).
+///
+/// # Errors
+/// The device refuses something, or does not answer.
+pub fn run_scene(
+    session: &mut Session,
+    scene: &Scene,
+    options: &RunOptions,
+    watch: &mut dyn FnMut(usize, f64, f64),
+) -> Result<Runs, BridgeError> {
+    prepare(session, scene)?;
+    let mut runs = Vec::new();
+    let mut clock = 0;
+    for (i, start) in scene.starts().iter().enumerate() {
+        let mut log = Log::new(scene, *start);
+        let mut watch = |time: f64, distance: f64| watch(i, time, distance);
+        if options.stepped {
+            stepped::drive(session, scene, options, &mut clock, &mut log, &mut watch)?;
+        } else {
+            timed::drive(session, scene, options, &mut clock, &mut log, &mut watch)?;
+        }
+        runs.push(log.finish());
+    }
+    let mut times: Vec<f64> = runs.iter().flat_map(|r| r.round_trips.iter().copied()).collect();
+    Ok(Runs { runs, rtt_us: Latency::of(&mut times) })
+}
+
+/// Uploads the skill and the settings of a scene, after checking that the device has room for it.
+///
+/// # Errors
+/// It has not, refuses something, or does not answer.
+pub fn prepare(session: &mut Session, scene: &Scene) -> Result<(), BridgeError> {
+    let (room, wanted) = (usize::from(session.info().obstacles), scene.obstacles().len());
+    if wanted > room {
+        return Err(BridgeError::Capacity { device: session.device().into(), what: "obstacles", room, wanted });
+    }
+    let model = wire::model(scene)
+        .map_err(|e| BridgeError::Emulator(format!("the scene's model cannot be sent: {e}")))?;
+    session.request("stop", &ToDevice::Stop)?;
+    session.upload(&model)?;
+    session.request("the settings", &ToDevice::Configure(wire::settings(scene)))
+}
+
+/// Every obstacle of the scene at time `t`, as messages stamped with the host's clock, us.
+pub(super) fn sightings(scene: &Scene, t: f64, stamp: u64) -> impl Iterator<Item = ToDevice> + '_ {
+    scene.obstacles_at(t).map(move |o| ToDevice::Upsert { id: o.obstacle.id(), stamp, obstacle: wire::obstacle(&o, scene.dimension()) })
+}
+
+/// A run as it goes on.
+pub(super) struct Log<'a> {
+    scene: &'a Scene,
+    run: Run,
+    seen: u64,
+    bits: Vec<u8>,
+}
+
+impl<'a> Log<'a> {
+    fn new(scene: &'a Scene, start: Vector3<f64>) -> Self {
+        let run = Run {
+            start,
+            reached: false,
+            ticks: 0,
+            missed: 0,
+            min_gamma: f64::INFINITY,
+            nearest: None,
+            time_to_goal: None,
+            path: Vec::new(),
+            checksum: 0,
+            round_trips: Vec::new(),
+        };
+        Self { scene, run, seen: 0, bits: Vec::new() }
+    }
+
+    pub(super) fn start(&self) -> Vector3<f64> {
+        self.run.start
+    }
+
+    /// A command came, `rtt` us after its state went.
+    pub(super) fn command(&mut self, command: &Received, rtt: Option<f64>) {
+        self.run.ticks += 1;
+        self.bits.extend(command.velocity.iter().flat_map(|v| v.to_bits().to_le_bytes()));
+        self.run.round_trips.extend(rtt);
+    }
+
+    /// The robot is here; true once it has arrived.
+    pub(super) fn moved(&mut self, time: f64, position: Vector3<f64>, velocity: Vector3<f64>, region: Region) -> bool {
+        for o in self.scene.obstacles_at(time) {
+            let gamma = o.gamma(&position);
+            if gamma < self.run.min_gamma {
+                (self.run.min_gamma, self.run.nearest) = (gamma, Some(o.obstacle.name().into()));
+            }
+        }
+        let arrived = self.distance(&position) <= self.scene.goal().tolerance;
+        if self.seen % KEPT_TICKS == 0 || arrived {
+            self.run.path.push(PathPoint { time, position, velocity, region });
+        }
+        self.seen += 1;
+        if arrived {
+            (self.run.reached, self.run.time_to_goal) = (true, Some(time));
+        }
+        arrived
+    }
+
+    pub(super) fn distance(&self, position: &Vector3<f64>) -> f64 {
+        (position - self.scene.attractor()).norm()
+    }
+
+    pub(super) fn missed(&mut self, ticks: u64) {
+        self.run.missed += ticks;
+    }
+
+    fn finish(mut self) -> Run {
+        self.run.checksum = checksum(&self.bits);
+        self.run
+    }
+}

@@ -1,0 +1,91 @@
+//! Real time: the device ticks by its own clock, the robot moves by the host's.
+
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+use nalgebra::Vector3;
+use pliant_protocol::ToDevice;
+use pliant_protocol::message::{Region, TickMode};
+
+use super::PointRobot;
+use super::run::{Log, PERCEPTION_TICKS, RunOptions, TICK, sightings};
+use crate::bridge::session::Event;
+use crate::bridge::{BridgeError, Session, wire};
+use crate::scene::Scene;
+
+/// Ticks between two states on a link that cannot carry more.
+const SLOW_TICKS: u64 = 10;
+/// States under way whose command has not come; older ones are given up.
+const UNDER_WAY: usize = 256;
+
+/// From a start to the goal or the end of patience. `clock` is the host's, us, and goes on from run to run.
+pub(super) fn drive(
+    session: &mut Session,
+    scene: &Scene,
+    options: &RunOptions,
+    clock: &mut u64,
+    log: &mut Log<'_>,
+    watch: &mut dyn FnMut(f64, f64),
+) -> Result<(), BridgeError> {
+    let mut robot = PointRobot::at(log.start());
+    let patience = options.duration.unwrap_or(scene.goal().timeout);
+    let state_ticks = if options.slow_link { SLOW_TICKS } else { 1 };
+    session.request("clear", &ToDevice::Clear)?;
+    for sighting in sightings(scene, 0.0, *clock) {
+        session.request("an obstacle", &sighting)?;
+    }
+    session.request("arm", &ToDevice::Arm { tick: TickMode::Timed })?;
+    let missed = session.statistics()?.missed;
+    let mut wanted = Vector3::zeros();
+    let mut region = Region::Free;
+    let mut under_way: VecDeque<(u16, Instant)> = VecDeque::new();
+    let begin = Instant::now();
+    for tick in 0.. {
+        let time = tick as f64 * TICK;
+        if log.moved(time, robot.position, robot.velocity, region) || time >= patience {
+            break;
+        }
+        if tick % PERCEPTION_TICKS == 0 {
+            for sighting in sightings(scene, time, *clock) {
+                session.send(&sighting)?;
+            }
+            watch(time, log.distance(&robot.position));
+        }
+        if tick % state_ticks == 0 {
+            let state = ToDevice::State { stamp: *clock, position: wire::vector(&robot.position) };
+            if under_way.len() == UNDER_WAY {
+                under_way.pop_front();
+            }
+            under_way.push_back((session.send(&state)?, Instant::now()));
+        }
+        let end = begin + Duration::from_secs_f64((tick + 1) as f64 * TICK);
+        let late = Instant::now().saturating_duration_since(end).as_millis() as u64;
+        log.missed(u64::from(late > 0));
+        loop {
+            let left = end.saturating_duration_since(Instant::now());
+            match session.event(left)? {
+                Some(Event::Command(command)) => {
+                    let of = under_way.iter().position(|(sequence, _)| *sequence == command.state);
+                    let rtt = of.map(|i| {
+                        let (_, sent) = under_way[i];
+                        under_way.drain(..=i);
+                        sent.elapsed().as_secs_f64() * 1e6
+                    });
+                    log.command(&command, rtt);
+                    wanted = Vector3::from(command.velocity.map(f64::from));
+                    region = command.region;
+                }
+                Some(Event::Refused(error)) => {
+                    let device = session.device().into();
+                    return Err(BridgeError::Refused { device, what: "the run".into(), error });
+                }
+                None => break,
+            }
+        }
+        robot.step(&wanted, TICK);
+        *clock += 1000;
+    }
+    session.request("stop", &ToDevice::Stop)?;
+    log.missed(u64::from(session.statistics()?.missed.saturating_sub(missed)));
+    Ok(())
+}

@@ -1,0 +1,31 @@
+//! A second evaluation of the method, written from `docs/method.md` alone.
+//!
+//! It shares no code with the core, runs in `f64` on the standard math library, takes its dimension at run
+//! time, and uses other algebra wherever the page leaves a choice: the modulation is an explicit E D E^-1
+//! with a matrix inverse, the Gaussians use covariance matrices, the weights are ratios, the directional mean
+//! is a mean of rotations. What two such programs agree on is the page, not a shared slip.
+//!
+//! Some inputs lie on a switch of the method (a soft shell, an exactly opposite velocity), where rounding alone
+//! decides; [`Evaluation::switches`] says how far each switch is, so that a comparison can leave those out.
+
+mod adaptation;
+mod combination;
+mod error;
+mod evaluation;
+mod geometry;
+mod limits;
+mod modulation;
+mod motion;
+mod obstacle;
+pub mod random_scene;
+mod scene;
+
+#[cfg(test)]
+mod properties;
+
+pub use error::OracleError;
+pub use evaluation::{Evaluation, ObstacleView, Region, Switches, evaluate};
+pub use scene::{
+    OracleComponent, OracleLimits, OracleMethod, OracleMotion, OracleObstacle, OracleRotation, OracleScene, OracleSpin,
+    OracleSteering, OracleTick,
+};
