@@ -121,8 +121,11 @@ impl Desk {
     }
 
     fn hello(&mut self, sequence: u16, schema: u64) -> ToHost {
-        self.arrivals.restart(sequence);
-        self.greeted = schema == SCHEMA;
+        // One who speaks another schema is told ours, and disturbs nobody's session.
+        if schema == SCHEMA {
+            self.arrivals.restart(sequence);
+            self.greeted = true;
+        }
         let name = self.identity.board.get(..message::BOARD_MAX).unwrap_or(self.identity.board);
         ToHost::Hello {
             schema: SCHEMA,

@@ -108,6 +108,8 @@ fn a_stranger_is_told_the_schema_and_nothing_else() {
     assert_eq!(host.refused(ToDevice::Clear), DeviceError::Schema { ours: SCHEMA });
     assert!(matches!(host.say(ToDevice::Hello { schema: SCHEMA }), Some(ToHost::Hello { tick_hz: 1000, .. })));
     host.ok(ToDevice::Clear);
+    assert!(matches!(host.say(ToDevice::Hello { schema: 1 }), Some(ToHost::Hello { schema: SCHEMA, .. })));
+    host.ok(ToDevice::Clear);
 }
 
 #[test]

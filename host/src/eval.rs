@@ -67,7 +67,10 @@ impl Points {
         let header = reader.headers().map_err(|e| bad(Some(1), e.to_string()))?;
         if header.iter().ne(axes.iter().copied()) {
             let found = header.iter().collect::<Vec<_>>().join(",");
-            return Err(bad(Some(1), format!("the header is `{found}`; a scene of {dimension} dimensions wants `{}`", axes.join(","))));
+            return Err(bad(
+                Some(1),
+                format!("the header is `{found}`; a scene of {dimension} dimensions wants `{}`", axes.join(",")),
+            ));
         }
         let mut points = Vec::new();
         for record in reader.records() {
@@ -101,7 +104,11 @@ pub fn evaluate(scene: &Scene, points: &Points, stage: Stage) -> Result<Vec<Eval
     }
 }
 
-fn evaluate_in<S: Scalar, const D: usize>(scene: &Scene, points: &Points, stage: Stage) -> Result<Vec<Evaluation>, ConvertError> {
+fn evaluate_in<S: Scalar, const D: usize>(
+    scene: &Scene,
+    points: &Points,
+    stage: Stage,
+) -> Result<Vec<Evaluation>, ConvertError> {
     let controller: Controller<S, D, MAX_OBSTACLES> = scene.controller(0.0)?;
     let rows = points.0.iter().filter_map(|point| {
         let state = RobotState::new(Vector::<S, D>::from_fn(|i, _| S::from_f64(point[i])))?;
@@ -144,7 +151,8 @@ pub fn evaluate_on(session: &mut Session, scene: &Scene, points: &Points) -> Res
         // A step takes a millisecond, in which obstacles move on and age: put them back.
         let stamp = i as u64 * 1000;
         for o in scene.obstacles_at(0.0).filter(|o| i % 100 == 0 || o.obstacle.is_moving()) {
-            let upsert = ToDevice::Upsert { id: o.obstacle.id(), stamp, obstacle: wire::obstacle(&o, scene.dimension()) };
+            let upsert =
+                ToDevice::Upsert { id: o.obstacle.id(), stamp, obstacle: wire::obstacle(&o, scene.dimension()) };
             session.request("an obstacle", &upsert)?;
         }
         let command = session.step(stamp, wire::vector(point))?;

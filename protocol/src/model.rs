@@ -37,8 +37,7 @@ pub struct Model {
 
 /// The motion of a skill.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
-// A model is one value that is decoded, converted and dropped: boxing needs a heap, and nothing would be gained.
-#[allow(clippy::large_enum_variant)]
+#[expect(clippy::large_enum_variant, reason = "a model is decoded, converted and dropped, where there is no heap")]
 pub enum Motion {
     /// Straight to the attractor: f(x) = -gain (x - attractor).
     Linear {

@@ -3,8 +3,8 @@
 use std::fs;
 
 use pliant_core::{
-    Ageing, Component, Controller, Limits, LpvDs, Matrix, Motion, Obstacle, ObstacleSpec, Region, RobotState,
-    Settings, SteeringPolicy, Vector, rotation,
+    Ageing, Component, Controller, Limits, LpvDs, Matrix, Motion, Obstacle, ObstacleSpec, Region, RobotState, Settings,
+    SteeringPolicy, Vector, rotation,
 };
 use pliant_tests::oracle::random_scene::{SamplePoint, generate};
 use pliant_tests::oracle::{
@@ -59,9 +59,7 @@ fn obstacle<const D: usize>(o: &OracleObstacle) -> Obstacle<f64, D> {
     let (turn, spin) = match (o.rotation, o.spin) {
         (turn, spin) => (
             match turn {
-                OracleRotation::Angle(a) => {
-                    rotation::spatial([(a / 2.0).cos(), 0.0, 0.0, (a / 2.0).sin()]).unwrap()
-                }
+                OracleRotation::Angle(a) => rotation::spatial([(a / 2.0).cos(), 0.0, 0.0, (a / 2.0).sin()]).unwrap(),
                 OracleRotation::Quaternion(q) => rotation::spatial(q).unwrap(),
             },
             match spin {
@@ -191,7 +189,8 @@ fn pliant_eval_agrees_with_the_independent_evaluation() {
         fs::write(folder.join("p.csv"), csv).unwrap();
         for stage in ["nominal", "modulated", "adapted", "final"] {
             let ended =
-                programs::run(&folder, ["eval", "scene.toml", "--points", "p.csv", "-o", "v.csv", "--stage", stage]).unwrap();
+                programs::run(&folder, ["eval", "scene.toml", "--points", "p.csv", "-o", "v.csv", "--stage", stage])
+                    .unwrap();
             if ended.stderr.contains("attractor") && ended.stderr.contains("core") {
                 continue; // A random scene may put its goal into a core, which a scene file may not.
             }

@@ -3,11 +3,13 @@
 //! The stack figure is measured, not computed: the device paints its stack before it starts, and reports
 //! in its statistics how much paint is gone after a run in QEMU.
 
+use std::process::Stdio;
+
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::image::Image;
-use crate::workspace::{Workspace, output};
+use crate::workspace::{Workspace, cannot_start, written};
 
 /// How the figures are printed.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -26,26 +28,31 @@ pub fn run(workspace: &Workspace, format: Format) -> Result<(), Failure> {
         std::fs::read(&path).map_err(|error| Failure::new(format!("cannot read {}: {error}", path.display())))?;
     let image =
         Image::read(&bytes).map_err(|clause| Failure::new(format!("cannot measure {}: {clause}", path.display())))?;
-    let stack_used = stack_used(workspace)?;
+    // The other figures are good whether or not the device could be asked.
+    let stack_used = stack_used(workspace);
+    let reported = *stack_used.as_ref().unwrap_or(&None);
     match format {
-        Format::Table => print!("{}", table(&image, stack_used)),
-        Format::Json => println!("{}", object(&image, stack_used)),
+        Format::Table => print!("{}", table(&image, reported)),
+        Format::Json => println!("{}", object(&image, reported)),
     }
-    Ok(())
+    stack_used.map(|_| ())
 }
 
 /// The high-water mark the device reports after two seconds of the built-in scene, if it reports one.
+///
+/// In real time, so that the tick interrupts the links as it does in use.
 fn stack_used(workspace: &Workspace) -> Result<Option<u64>, Failure> {
     workspace.build_pliant()?;
-    let report = output(
-        workspace
-            .command(workspace.pliant())
-            .args(["run", "--device", "qemu", "--headless"])
-            .args(["--duration", "2", "--json"])
-            .env("PLIANT_FIRMWARE", workspace.firmware()),
-    )?;
-    let report: Value = serde_json::from_str(&report)
-        .map_err(|error| Failure::new(format!("`pliant run --json` did not give JSON: {error}")))?;
+    let mut command = workspace.command(workspace.pliant());
+    command
+        .args(["run", "--device", "qemu", "--headless", "--duration", "2", "--json"])
+        .env("PLIANT_FIRMWARE", workspace.firmware())
+        .stderr(Stdio::inherit());
+    // Its exit code says whether the goal was reached, which is not asked here.
+    let output = command.output().map_err(|error| cannot_start(&command, &error))?;
+    let report: Value = serde_json::from_slice(&output.stdout).map_err(|_| {
+        Failure::new(format!("the stack could not be measured: `{}` gave no report", written(&command)))
+    })?;
     Ok(find(&report, "stack_used").and_then(Value::as_u64))
 }
 

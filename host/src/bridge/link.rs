@@ -35,8 +35,7 @@ impl Udp {
     /// # Errors
     /// No socket to be had.
     pub fn to(peer: SocketAddr) -> io::Result<Self> {
-        let any: SocketAddr =
-            if peer.is_ipv4() { ([0, 0, 0, 0], 0).into() } else { ([0u16; 8], 0).into() };
+        let any: SocketAddr = if peer.is_ipv4() { ([0, 0, 0, 0], 0).into() } else { ([0u16; 8], 0).into() };
         let socket = UdpSocket::bind(any)?;
         socket.connect(peer)?;
         Ok(Self { socket, timeout: None })

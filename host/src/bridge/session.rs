@@ -165,7 +165,11 @@ impl Session {
         while let Some(message) = self.next(until.saturating_duration_since(Instant::now()))? {
             match message {
                 ToHost::Refused { of: refused, error } if refused == of => {
-                    return Err(BridgeError::Refused { device: self.device.clone(), what: "the robot's state".into(), error });
+                    return Err(BridgeError::Refused {
+                        device: self.device.clone(),
+                        what: "the robot's state".into(),
+                        error,
+                    });
                 }
                 other => {
                     if let Some(command) = received(&other).filter(|c| c.state == of) {

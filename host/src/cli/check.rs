@@ -36,9 +36,9 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
             "model": model.name, "dimension": model.dimension, "components": components, "certified": true, "certificate": each,
         }));
     } else {
-        println!("{}: {} dimensions, {components} components", model.name, model.dimension);
+        say!("{}: {} dimensions, {components} components", model.name, model.dimension);
         for f in found {
-            println!(
+            say!(
                 "  {}: certified; the distance to the goal shrinks at {:.3} 1/s or faster everywhere (component {} is the slowest)",
                 f.precision,
                 f.rate,

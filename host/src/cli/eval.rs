@@ -1,12 +1,11 @@
 //! `pliant eval`
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use serde_json::json;
 
-use super::{Finished, print_json};
+use super::{Finished, print, print_json};
 use crate::bridge::Device;
 use crate::error::{Error, Outcome};
 use crate::eval::{Evaluation, Points, Stage, evaluate, evaluate_on};
@@ -59,7 +58,9 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     let rows = match &args.device {
         None => evaluate(&scene, &points, args.stage.stage())?,
         Some(_) if !matches!(args.stage, StageName::Final) => {
-            return Err(Error::bad_input("--stage: a device gives only its final velocity; leave out --device for the other stages"));
+            return Err(Error::bad_input(
+                "--stage: a device gives only its final velocity; leave out --device for the other stages",
+            ));
         }
         Some(device) => evaluate_on(&mut device.open()?, &scene, &points)?,
     };
@@ -70,7 +71,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         let rows: Vec<_> = rows.iter().map(|r| row_json(r, scene.dimension())).collect();
         print_json(&json!({ "scene": scene.name(), "points": rows.len(), "out": args.out, "rows": rows }));
     } else if args.out.is_none() {
-        let _ = std::io::stdout().write_all(to_csv(&rows, scene.dimension()).as_bytes());
+        print(&to_csv(&rows, scene.dimension()));
     }
     Ok(Outcome::Success)
 }
@@ -92,7 +93,11 @@ fn row_json(row: &Evaluation, dimension: usize) -> serde_json::Value {
 /// Every number in full, so that reading it back gives the same bits.
 fn to_csv(rows: &[Evaluation], dimension: usize) -> String {
     let axes = &["x", "y", "z"][..dimension];
-    let mut text = format!("{},{},gamma,region,status\n", axes.join(","), axes.iter().map(|a| format!("v{a}")).collect::<Vec<_>>().join(","));
+    let mut text = format!(
+        "{},{},gamma,region,status\n",
+        axes.join(","),
+        axes.iter().map(|a| format!("v{a}")).collect::<Vec<_>>().join(",")
+    );
     for row in rows {
         for x in row.position.iter().take(dimension).chain(row.velocity.iter().take(dimension)) {
             text += &format!("{x},");

@@ -33,7 +33,8 @@ pub struct Args {
 }
 
 pub(super) fn main(args: &Args, json: bool) -> Finished {
-    let stem = args.demos.first().and_then(|p| p.file_stem()).map_or("skill".into(), |s| s.to_string_lossy().to_lowercase());
+    let stem =
+        args.demos.first().and_then(|p| p.file_stem()).map_or("skill".into(), |s| s.to_string_lossy().to_lowercase());
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.toml")));
     let name = out.file_stem().map_or(stem, |s| s.to_string_lossy().into_owned());
     let options = Options {
@@ -59,10 +60,18 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
             "converged": q.converged, "rollouts": q.rollouts, "certified": true, "seconds": seconds,
         }));
     } else {
-        println!("{}: learnt from {demonstrations} demonstrations in {seconds:.2} s, {k} components, certified in f32 and f64", learnt.model.name);
-        println!("  velocity error {:.4} m/s, direction error {:.4}, path error {:.1} mm", q.rmse, q.e_dot, q.path_error * 1e3);
-        println!("  {} of {} rollouts from the demonstrations' starts arrive", q.converged, q.rollouts);
-        println!("  model: {}", out.display());
+        say!(
+            "{}: learnt from {demonstrations} demonstrations in {seconds:.2} s, {k} components, certified in f32 and f64",
+            learnt.model.name
+        );
+        say!(
+            "  velocity error {:.4} m/s, direction error {:.4}, path error {:.1} mm",
+            q.rmse,
+            q.e_dot,
+            q.path_error * 1e3
+        );
+        say!("  {} of {} rollouts from the demonstrations' starts arrive", q.converged, q.rollouts);
+        say!("  model: {}", out.display());
     }
     Ok(Outcome::Success)
 }

@@ -3,6 +3,13 @@
 //! Exit 0 is success, 1 that what ran failed (goal missed, core touched), 2 bad input. With `--json` stdout has one JSON object and
 //! nothing else.
 
+/// Prints a line; like `println!`, but whoever closed standard output does not want to know.
+macro_rules! say {
+    ($($arguments:tt)*) => {
+        $crate::cli::print(&(format!($($arguments)*) + "\n"))
+    };
+}
+
 mod check;
 mod eval;
 mod learn;
@@ -10,6 +17,7 @@ mod plot;
 mod progress;
 mod run;
 
+use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -77,9 +85,14 @@ fn scene(path: Option<&Path>) -> Result<Scene, Error> {
     })
 }
 
+/// Prints to standard output; whoever closed it does not want to know.
+fn print(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
 /// Prints the one JSON object.
 fn print_json(value: &serde_json::Value) {
-    println!("{value:#}");
+    print(&format!("{value:#}\n"));
 }
 
 /// A number for JSON, which has no infinity.

@@ -37,7 +37,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     if json {
         print_json(&json!({ "scene": scene.name(), "figure": out, "trajectories": trajectories.len() }));
     } else {
-        println!("{}", out.display());
+        say!("{}", out.display());
     }
     Ok(Outcome::Success)
 }

@@ -127,13 +127,13 @@ fn as_json(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Option<
 
 fn print_table(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Option<&Path>) {
     let pace = if args.stepped { "stepped" } else { "1 kHz" };
-    println!("{} on {} ({board}, {pace}): {} obstacles\n", scene.name(), args.device, scene.obstacles().len());
-    println!("  start                     reached  time s  min Gamma  nearest              ticks  missed");
+    say!("{} on {} ({board}, {pace}): {} obstacles\n", scene.name(), args.device, scene.obstacles().len());
+    say!("  start                     reached  time s  min Gamma  nearest              ticks  missed");
     for r in &runs.runs {
         let coordinates: Vec<_> = r.start.iter().take(scene.dimension()).map(|x| format!("{x:.3}")).collect();
         let time = r.time_to_goal.map_or("-".into(), |t| format!("{t:.2}"));
         let gamma = if r.min_gamma.is_finite() { format!("{:.3}", r.min_gamma) } else { "-".into() };
-        println!(
+        say!(
             "  {:<24}  {:<7}  {time:>6}  {gamma:>9}  {:<18}  {:>6}  {:>6}",
             format!("({})", coordinates.join(", ")),
             if r.reached { "yes" } else { "NO" },
@@ -143,19 +143,19 @@ fn print_table(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Opt
         );
     }
     let rtt = runs.rtt_us;
-    println!("\n  state to command: median {:.0} us, 99 % {:.0} us, longest {:.0} us", rtt.p50, rtt.p99, rtt.max);
+    say!("\n  state to command: median {:.0} us, 99 % {:.0} us, longest {:.0} us", rtt.p50, rtt.p99, rtt.max);
     match (runs.reached(), runs.untouched()) {
-        (true, true) => println!("  every start reached the goal and no hard core was touched"),
+        (true, true) => say!("  every start reached the goal and no hard core was touched"),
         (reached, untouched) => {
             if !reached {
-                println!("  FAILED: the goal was not reached in time from every start");
+                say!("  FAILED: the goal was not reached in time from every start");
             }
             if !untouched {
-                println!("  FAILED: a hard core was touched (Gamma <= 1)");
+                say!("  FAILED: a hard core was touched (Gamma <= 1)");
             }
         }
     }
     if let Some(figure) = figure {
-        println!("  figure: {} (and .svg beside it)", figure.display());
+        say!("  figure: {} (and .svg beside it)", figure.display());
     }
 }

@@ -17,7 +17,8 @@ impl Latency {
     /// Of times in us; all zero where there are none.
     pub fn of(times: &mut [f64]) -> Self {
         times.sort_by(f64::total_cmp);
-        let at = |share: f64| times.get(((times.len().max(1) - 1) as f64 * share).round() as usize).copied().unwrap_or(0.0);
+        let at =
+            |share: f64| times.get(((times.len().max(1) - 1) as f64 * share).round() as usize).copied().unwrap_or(0.0);
         Self { p50: at(0.5), p99: at(0.99), max: at(1.0) }
     }
 }

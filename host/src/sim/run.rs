@@ -128,8 +128,8 @@ pub fn prepare(session: &mut Session, scene: &Scene) -> Result<(), BridgeError> 
     if wanted > room {
         return Err(BridgeError::Capacity { device: session.device().into(), what: "obstacles", room, wanted });
     }
-    let model = wire::model(scene)
-        .map_err(|e| BridgeError::Emulator(format!("the scene's model cannot be sent: {e}")))?;
+    let model =
+        wire::model(scene).map_err(|e| BridgeError::Emulator(format!("the scene's model cannot be sent: {e}")))?;
     session.request("stop", &ToDevice::Stop)?;
     session.upload(&model)?;
     session.request("the settings", &ToDevice::Configure(wire::settings(scene)))
@@ -137,7 +137,11 @@ pub fn prepare(session: &mut Session, scene: &Scene) -> Result<(), BridgeError> 
 
 /// Every obstacle of the scene at time `t`, as messages stamped with the host's clock, us.
 pub(super) fn sightings(scene: &Scene, t: f64, stamp: u64) -> impl Iterator<Item = ToDevice> + '_ {
-    scene.obstacles_at(t).map(move |o| ToDevice::Upsert { id: o.obstacle.id(), stamp, obstacle: wire::obstacle(&o, scene.dimension()) })
+    scene.obstacles_at(t).map(move |o| ToDevice::Upsert {
+        id: o.obstacle.id(),
+        stamp,
+        obstacle: wire::obstacle(&o, scene.dimension()),
+    })
 }
 
 /// A run as it goes on.

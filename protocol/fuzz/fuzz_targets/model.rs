@@ -21,7 +21,8 @@ fuzz_target!(|data: &[u8]| {
     let again = model.to_bytes(&mut room).expect("every model fits");
     assert!(again.len() <= data.len());
     let back = Model::from_bytes(again).expect("what was encoded is understood");
-    assert_eq!(format!("{back:?}"), format!("{model:?}"));
+    // Not-a-number is not equal to itself, but has the same bytes.
+    assert!(back == model || back.to_bytes(&mut [0; MODEL_MAX]) == Ok(again));
     drive::<2>(&model);
     drive::<3>(&model);
 });

@@ -1,7 +1,5 @@
 //! What the fuzz targets share. Run one with `cargo +nightly fuzz run to_device` in the `protocol` folder.
 
-use std::fmt::Debug;
-
 use pliant_protocol::{FRAME_MAX, Frame, VERSION, checksum, decode, encode};
 use serde::{Serialize, de::DeserializeOwned};
 
@@ -16,7 +14,7 @@ pub fn sealed(data: &[u8]) -> Vec<u8> {
 
 /// Reads `data` as a frame, as it is and sealed. Whatever is understood must fit a frame, come back the same, and not
 /// grow on the way.
-pub fn understood<M: Serialize + DeserializeOwned + Debug>(data: &[u8]) -> Option<M> {
+pub fn understood<M: Serialize + DeserializeOwned + PartialEq>(data: &[u8]) -> Option<M> {
     let _ = decode::<M>(data);
     let frame = sealed(data);
     let Frame { sequence, message } = match decode::<M>(&frame) {
@@ -31,6 +29,7 @@ pub fn understood<M: Serialize + DeserializeOwned + Debug>(data: &[u8]) -> Optio
     assert!(again.len() <= frame.len());
     let back: Frame<M> = decode(again).expect("what was encoded is understood");
     assert_eq!(back.sequence, sequence);
-    assert_eq!(format!("{:?}", back.message), format!("{message:?}"));
+    // Not-a-number is not equal to itself, but has the same bytes.
+    assert!(back.message == message || encode(sequence, &back.message, &mut [0; FRAME_MAX]) == Ok(again));
     Some(message)
 }

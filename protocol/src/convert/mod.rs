@@ -2,7 +2,7 @@
 //!
 //! Inward, every number is looked at: first that all are finite, then that nothing is said about a third dimension
 //! where there are two, then the ranges, which are `pliant_core`'s own. The first fault is named by its
-//! [`Field`](crate::message::Field). Outward nothing can fail; what is wider than `f32` is rounded.
+//! [`Field`]. Outward nothing can fail; what is wider than `f32` is rounded.
 //!
 //! The same functions run on the device and on the host, so both have the same bits of the same message.
 

@@ -100,8 +100,9 @@ impl Default for Obstacle {
     }
 }
 
-/// The unit quaternion w, x, y, z of a rotation, with w >= 0 (Shepperd's method: the largest of the four is found first, so
-/// that the division by it is harmless).
+/// The unit quaternion w, x, y, z of a rotation, with w >= 0.
+///
+/// This is Shepperd's method: the largest of the four is found first, so that no division is by a small number.
 fn quaternion(m: &Matrix<f64, 3>) -> [f32; 4] {
     let (xx, yy, zz) = (m[(0, 0)], m[(1, 1)], m[(2, 2)]);
     let (x, y, z) = (m[(2, 1)] - m[(1, 2)], m[(0, 2)] - m[(2, 0)], m[(1, 0)] - m[(0, 1)]);

@@ -200,10 +200,9 @@ impl Display for Field {
 impl Display for DeviceError {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match self {
-            Self::Schema { ours } => write!(
-                f,
-                "host and device were built from different messages (the device has schema {ours:016x}): flash the firmware of this release"
-            ),
+            Self::Schema { ours } => {
+                write!(f, "built from other messages than the device (its schema is {ours:016x}): flash new firmware")
+            }
             Self::Frame(fault) => fault.fmt(f),
             Self::Mode(mode) => write!(f, "not allowed while the device is {mode}"),
             Self::NotFinite(field) => write!(f, "{field} is not finite"),
@@ -217,7 +216,7 @@ impl Display for DeviceError {
                 f.write_str("the Lyapunov matrix is not symmetric and positive definite")
             }
             Self::Certificate { component: Some(k) } => {
-                write!(f, "component {k} breaks the stability certificate: A'P + PA is not negative definite")
+                write!(f, "component {k} breaks the certificate: A'P + PA is not negative definite")
             }
         }
     }

@@ -85,7 +85,8 @@ pub enum ToDevice {
     },
     /// Takes every obstacle out of the table.
     Clear,
-    /// Where the robot is. Answered by a [`ToHost::Command`], or by [`ToHost::Refused`].
+    /// Where the robot is. A [`ToHost::Command`] follows: with the next tick, or at once where states make the ticks. A
+    /// bad state is answered by [`ToHost::Refused`].
     State {
         /// When the robot was there, in microseconds of the host's clock.
         stamp: u64,

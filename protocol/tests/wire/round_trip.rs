@@ -5,6 +5,7 @@ use core::fmt::Debug;
 use pliant_protocol::frame::NoRoom;
 use pliant_protocol::model::{MODEL_MAX, Model};
 use pliant_protocol::{FRAME_MAX, Frame, FrameError, ToDevice, ToHost, VERSION, checksum, decode, encode};
+use proptest::collection::vec;
 use proptest::prelude::*;
 use serde::{Serialize, de::DeserializeOwned};
 
@@ -82,14 +83,14 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_are_answered(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+    fn any_bytes_are_answered(bytes in vec(any::<u8>(), 0..300)) {
         let _ = decode::<ToDevice>(&bytes);
         let _ = decode::<ToHost>(&bytes);
         let _ = Model::from_bytes(&bytes);
     }
 
     #[test]
-    fn any_bytes_with_a_right_crc_are_answered(sequence: u16, tag in 0..14u8, bytes in prop::collection::vec(any::<u8>(), 0..250)) {
+    fn any_bytes_with_a_right_crc_are_answered(sequence: u16, tag in 0..14u8, bytes in vec(any::<u8>(), 0..250)) {
         let [low, high] = sequence.to_le_bytes();
         let frame = sealed(&[&[VERSION, low, high, tag], &bytes[..]].concat());
         for error in [decode::<ToDevice>(&frame).err(), decode::<ToHost>(&frame).err()].into_iter().flatten() {
@@ -98,7 +99,7 @@ proptest! {
     }
 
     #[test]
-    fn another_version_is_named_with_its_frame(theirs: u8, sequence: u16, bytes in prop::collection::vec(any::<u8>(), 0..250)) {
+    fn another_version_is_named_with_its_frame(theirs: u8, sequence: u16, bytes in vec(any::<u8>(), 0..250)) {
         prop_assume!(theirs != VERSION);
         let [low, high] = sequence.to_le_bytes();
         let frame = sealed(&[&[theirs, low, high], &bytes[..]].concat());

@@ -181,6 +181,26 @@ mod tests {
     }
 
     #[test]
+    fn each_of_an_intersection_slows_along_its_own_tangent() {
+        // Normals (0, 1) and (1, 0), u = (3, 4): tangential parts (3, 0) and (0, 4), leaning by 0.01 |f| = 0.05
+        // to (-1, 0) and (0, 1), which does not turn them. c (2 / 1.25)^2 = 0.256 along each.
+        let f = v(&[3.0, 4.0]);
+        let pair = [layer(0.5, &[0.0, 1.0]), layer(0.75, &[1.0, 0.0])];
+        let slowed = adapt(&f, &f, &pair, WITH_FLOW, 0.1);
+        assert!((slowed - v(&[3.0 - 0.256, 4.0 - 0.256])).amax() < 1e-15);
+    }
+
+    #[test]
+    fn a_slow_flow_is_pushed_in_proportion() {
+        let f = v(&[1.0, 0.0]);
+        for normal in [[0.0, 1.0], [-0.6, 0.8], [-1.0, 0.0]] {
+            let full = adapt(&f, &f, &[layer(0.5, &normal)], WITH_FLOW, 0.1);
+            let slow = adapt(&(&f * 1e-6), &(&f * 1e-6), &[layer(0.5, &normal)], WITH_FLOW, 1e-7);
+            assert!((full - slow * 1e6).amax() < 1e-14);
+        }
+    }
+
+    #[test]
     fn no_push_without_a_nominal_motion() {
         let u = v(&[0.3, 0.1]);
         assert_eq!(adapt(&u, &v(&[0.0, 0.0]), &[layer(0.5, &[0.0, 1.0])], WITH_FLOW, 0.1), u);

@@ -150,6 +150,17 @@ mod tests {
     }
 
     #[test]
+    fn the_heading_is_that_of_the_first_axis() {
+        let mut obstacle = OracleObstacle::still(&[0.0, 0.0], &[2.0, 1.0]);
+        obstacle.rotation = OracleRotation::Angle(0.6);
+        assert!((body(&obstacle).heading() - 0.6).abs() < 1e-15);
+        // 120 degrees about (1, 1, 1) takes x to y.
+        let mut obstacle = OracleObstacle::still(&[0.0, 0.0, 0.0], &[2.0, 1.0, 1.0]);
+        obstacle.rotation = OracleRotation::Quaternion([0.5, 0.5, 0.5, 0.5]);
+        assert!((body(&obstacle).heading() - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    }
+
+    #[test]
     fn the_original_method_has_no_soft_layer() {
         let obstacle = OracleObstacle::still(&[0.0, 0.0], &[1.0, 1.0]).soft(2.0);
         let rigid = Body::new(&obstacle, 2, OracleMethod::Original).unwrap();

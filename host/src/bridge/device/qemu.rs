@@ -103,7 +103,10 @@ impl Process {
             let _ = io::Read::read_to_string(&mut stderr, &mut words);
         }
         let words = words.trim();
-        Some(BridgeError::Emulator(format!("QEMU ended by itself ({status}){}{words}", if words.is_empty() { "" } else { ": " })))
+        Some(BridgeError::Emulator(format!(
+            "QEMU ended by itself ({status}){}{words}",
+            if words.is_empty() { "" } else { ": " }
+        )))
     }
 
     fn check(&mut self) -> io::Result<()> {
@@ -139,7 +142,8 @@ fn firmware() -> Result<PathBuf, BridgeError> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     if !source.join("firmware").is_dir() {
         return Err(BridgeError::Emulator(
-            "the firmware's source is not where this tool was built: set PLIANT_FIRMWARE to the firmware's ELF file".into(),
+            "the firmware's source is not where this tool was built: set PLIANT_FIRMWARE to the firmware's ELF file"
+                .into(),
         ));
     }
     build(&source)
@@ -153,7 +157,8 @@ fn build(source: &Path) -> Result<PathBuf, BridgeError> {
         eprintln!("building the firmware for {TARGET} (once)");
     }
     let output = cargo(source, &target).output();
-    let output = output.map_err(|error| BridgeError::Emulator(format!("cannot run cargo to build the firmware: {error}")))?;
+    let output =
+        output.map_err(|error| BridgeError::Emulator(format!("cannot run cargo to build the firmware: {error}")))?;
     if !output.status.success() {
         let words = String::from_utf8_lossy(&output.stderr);
         return Err(BridgeError::Emulator(format!("the firmware does not build:\n{words}")));
@@ -179,7 +184,9 @@ fn ensure_target() -> Result<(), BridgeError> {
     eprintln!("installing the Rust target {TARGET} (rustup target add {TARGET})");
     match Command::new("rustup").args(["target", "add", TARGET]).output() {
         Ok(output) if output.status.success() => Ok(()),
-        _ => Err(BridgeError::Emulator(format!("the Rust target {TARGET} is missing: run `rustup target add {TARGET}`"))),
+        _ => {
+            Err(BridgeError::Emulator(format!("the Rust target {TARGET} is missing: run `rustup target add {TARGET}`")))
+        }
     }
 }
 

@@ -116,6 +116,18 @@ fn the_original_method_has_no_adaptive_motion() {
 }
 
 #[test]
+fn inside_a_core_its_own_layer_does_not_push() {
+    let soft = OracleObstacle::still(&[0.0, 0.0], &[1.0, 1.0]).soft(1.5);
+    let mut scene = scene(&[3.0, 0.5], vec![soft]);
+    for steering in [OracleSteering::WithFlow { beta: 1.0 }, OracleSteering::Fixed { angle: 0.7 }] {
+        scene.steering = steering;
+        let seen = at(&scene, &[-0.9, 0.1]);
+        assert_eq!((seen.region, &seen.adapted), (Region::Hard, &seen.modulated));
+        assert!(at(&scene, &[-1.1, 0.1]).adapted != at(&scene, &[-1.1, 0.1]).modulated);
+    }
+}
+
+#[test]
 fn the_soft_shell_is_crossed_without_a_jump() {
     let soft = |center: &[f64]| OracleObstacle::still(center, &[1.0, 1.0]).soft(1.5);
     let mut scene = scene(&[3.0, 0.5], vec![soft(&[0.0, 0.0]), soft(&[2.2, 0.4])]);

@@ -1,0 +1,230 @@
+//! What is wrong gets one clear message - file, line, field, what is allowed - and exit 2, never a panic.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use pliant_tests::programs::{self, Ended, root};
+
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("pliant-bad-{name}-{}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        fs::write(self.0.join(name), bytes).unwrap();
+    }
+    fn run(&self, arguments: &[&str]) -> Ended {
+        programs::run(&self.0, arguments).unwrap()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Exit 2, all the words on stderr, nothing on stdout, no panic; and with `--json` one object that has them too.
+fn refused(folder: &Folder, arguments: &[&str], words: &[&str]) {
+    let ended = folder.run(arguments);
+    let (out, said) = (&ended.stdout, &ended.stderr);
+    assert_eq!(ended.code, Some(2), "{arguments:?}: {out}{said}");
+    assert!(!said.contains("panicked"), "{arguments:?}: {said}");
+    assert!(out.is_empty(), "{arguments:?}: {out}");
+    // Messages may be wrapped to the width of a screen.
+    let flat = said.split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
+    for word in words {
+        assert!(flat.contains(word), "{arguments:?} does not say `{word}`:\n{said}");
+    }
+    let mut with_json = arguments.to_vec();
+    with_json.push("--json");
+    let ended = folder.run(&with_json);
+    assert_eq!(ended.code, Some(2));
+    assert_eq!(ended.json()["error"]["exit"], 2, "{}", ended.stdout);
+}
+
+const SCENE: &str = "\
+[ds]
+linear = { attractor = [0.0, 0.0], gain = 1.0 }
+[modulation]
+c = 0.03
+[limits]
+speed = 0.5
+[[start]]
+position = [0.5, 0.0]
+[[obstacle]]
+name = \"foam\"
+shape = { ellipsoid = [0.04, 0.04] }
+center = [0.25, 0.01]
+stiffness = 1.6487
+";
+
+#[test]
+fn scenes() {
+    let folder = Folder::new("scene");
+    folder.write("good.toml", SCENE);
+    assert_eq!(folder.run(&["run", "good.toml", "--stepped", "--headless"]).code, Some(0));
+    // What is replaced, by what, the line at fault, and words of the message.
+    let cases: &[(&str, &str, usize, &[&str])] = &[
+        ("speed = 0.5", "spede = 0.5", 6, &["spede", "speed"]),
+        ("speed = 0.5", "speed = \"fast\"", 6, &["speed", "number"]),
+        ("speed = 0.5", "speed = nan", 6, &["speed"]),
+        ("speed = 0.5", "speed = 0", 6, &["speed", "above 0"]),
+        ("c = 0.03", "c = inf", 4, &["c"]),
+        ("[limits]", "[limitz]", 5, &["limitz", "limits"]),
+        ("stiffness = 1.6487", "stiffness = 0.9", 13, &["stiffness", "1"]),
+        ("stiffness = 1.6487", "stiffness = 1.5\nlayer = 0.02", 14, &["stiffness", "layer"]),
+        ("[0.04, 0.04]", "[0.04, 0.0]", 11, &["ellipsoid"]),
+        ("[0.04, 0.04]", "[0.04, -0.04]", 11, &["ellipsoid"]),
+        ("[0.04, 0.04]", "[0.04, 0.04, 0.04]", 11, &["ellipsoid", "2"]),
+        ("ellipsoid", "pyramid", 11, &["pyramid", "ellipsoid"]),
+        ("stiffness = 1.6487", "curvature = 0", 13, &["curvature"]),
+        ("stiffness = 1.6487", "rotation = [1.0, 0.0, 0.0, 0.0]", 13, &["rotation"]),
+        ("stiffness = 1.6487", "reference = [0.05, 0.0]", 13, &["reference", "core"]),
+        ("stiffness = 1.6487", "margin = [0.5, 1.0]", 13, &["margin"]),
+        ("center = [0.25, 0.01]", "center = [0.0, 0.01]", 2, &["attractor", "core"]),
+        ("center = [0.25, 0.01]", "center = [0.5, 0.01]", 8, &["position", "core"]),
+        ("position = [0.5, 0.0]", "position = [0.5, nan]", 8, &["position"]),
+        ("position = [0.5, 0.0]", "position = [5000.0, 0.0]", 8, &["position", "1000"]),
+        ("c = 0.03", "c = = 0.03", 4, &[]),
+        ("linear = { attractor = [0.0, 0.0], gain = 1.0 }", "model = \"nowhere.toml\"", 2, &["nowhere.toml"]),
+    ];
+    for (from, to, line, words) in cases {
+        assert!(SCENE.contains(from), "{from}");
+        folder.write("bad.toml", SCENE.replacen(from, to, 1));
+        let place = format!("bad.toml:{line}");
+        let mut all = vec![place.as_str()];
+        all.extend_from_slice(words);
+        refused(&folder, &["run", "bad.toml", "--stepped", "--headless"], &all);
+    }
+    // A rotation that is none, in space where there are rotations.
+    let spatial = SCENE
+        .replace("[0.0, 0.0]", "[0.0, 0.0, 0.0]")
+        .replace("[0.5, 0.0]", "[0.5, 0.0, 0.0]")
+        .replace("[0.04, 0.04]", "[0.04, 0.04, 0.04]")
+        .replace("[0.25, 0.01]", "[0.25, 0.01, 0.0]");
+    folder.write("bad.toml", format!("{spatial}rotation = [1.0, 0.1, 0.0, 0.0]\n"));
+    refused(&folder, &["run", "bad.toml"], &["bad.toml:14", "rotation"]);
+    refused(&folder, &["run", "missing.toml"], &["missing.toml", "cannot be read"]);
+    refused(&folder, &["plot", "good.toml", "-o", "figure.gif"], &["figure.gif", ".svg or .png"]);
+}
+
+#[test]
+fn models() {
+    let folder = Folder::new("model");
+    let good = fs::read_to_string(root().join("models/sbend.toml")).unwrap();
+    folder.write("good.toml", &good);
+    assert_eq!(folder.run(&["check", "good.toml"]).code, Some(0));
+    // The sign of one component's matrix: it now runs away from the goal.
+    let at = good.match_indices("a = [").nth(1).unwrap().0;
+    let end = at + good[at..].find("]]").unwrap() + 2;
+    folder.write("unstable.toml", format!("{}a = [[1.0, 0.0], [0.0, 1.0]]{}", &good[..at], &good[end..]));
+    refused(&folder, &["check", "unstable.toml"], &["component 2", "certificate"]);
+    let scene = SCENE.replacen("linear = { attractor = [0.0, 0.0], gain = 1.0 }", "model = \"unstable.toml\"", 1);
+    folder.write("scene.toml", scene);
+    refused(&folder, &["run", "scene.toml"], &["unstable.toml", "component 2"]);
+    let cases: &[(&str, &str, &str)] = &[
+        ("dimension = 2", "dimension = 7", "dimension"),
+        ("format = 1", "format = 9", "format"),
+        ("[[component]]", "[[komponent]]", "komponent"),
+        ("prior = ", "prior = -", "prior"),
+        ("name = ", "nme = ", "nme"),
+    ];
+    for (from, to, word) in cases {
+        assert!(good.contains(from), "{from}");
+        folder.write("bad.toml", good.replacen(from, to, 1));
+        refused(&folder, &["check", "bad.toml"], &["bad.toml", word]);
+    }
+    folder.write("bad.toml", &good[..good.len() / 2]);
+    refused(&folder, &["check", "bad.toml"], &["bad.toml"]);
+    refused(&folder, &["check", "missing.toml"], &["missing.toml"]);
+}
+
+#[test]
+fn demonstrations() {
+    let folder = Folder::new("demo");
+    let mut zeros = vec![0; 128];
+    zeros[124..128].copy_from_slice(&[0, 1, b'I', b'M']);
+    let cases: &[(&str, &[u8], &[&str])] = &[
+        ("empty.csv", b"", &["empty.csv"]),
+        ("header.csv", b"t,x,y\n", &["header.csv"]),
+        ("one.csv", b"t,x,y\n0,0.1,0.2\n", &["one.csv"]),
+        ("same.csv", b"t,x,y\n0,0.1,0.2\n1,0.1,0.2\n2,0.1,0.2\n", &["same.csv"]),
+        ("nan.csv", b"t,x,y\n0,0.1,0.2\n0.1,NaN,0.2\n0.2,0,0\n", &["nan.csv", "line 3"]),
+        ("word.csv", b"t,x,y\n0,0.1,0.2\n0.1,left,0.2\n", &["word.csv", "line 3", "left"]),
+        ("wrong.csv", b"time,px,py\n0,0,0\n", &["wrong.csv", "t,x,y"]),
+        ("text.mat", b"this is no MATLAB file", &["text.mat"]),
+        ("other.mat", &zeros, &["other.mat", "demos"]),
+        ("what.xyz", b"?", &["what.xyz"]),
+    ];
+    for (name, bytes, words) in cases {
+        folder.write(name, bytes);
+        refused(&folder, &["learn", name, "-o", "m.toml"], words);
+        assert!(!folder.0.join("m.toml").exists(), "{name} left a model behind");
+    }
+    folder.write("a.csv", "t,x,y\n0,0.3,0.2\n0.5,0.2,0.1\n1,0,0\n");
+    folder.write("b.csv", "t,x,y,z\n0,0.3,0.2,0\n0.5,0.2,0.1,0\n1,0,0,0\n");
+    refused(&folder, &["learn", "a.csv", "b.csv"], &["b.csv"]);
+    refused(&folder, &["learn", "nowhere.csv"], &["nowhere.csv"]);
+    refused(&folder, &["learn"], &["DEMO"]);
+}
+
+#[test]
+fn points() {
+    let folder = Folder::new("points");
+    folder.write("scene.toml", SCENE);
+    let cases: &[(&str, &[&str])] = &[
+        ("a,b\n0,0\n", &["line 1", "x,y"]),
+        ("x,y,z\n0,0,0\n", &["line 1", "x,y"]),
+        ("x,y\n0,0\n0,nan\n", &["line 3", "`y`"]),
+        ("x,y\n0,0\n0,2000\n", &["line 3", "1000"]),
+        ("x,y\n0,0\n0\n", &["line 3"]),
+    ];
+    for (text, words) in cases {
+        folder.write("p.csv", text);
+        let mut all = vec!["p.csv"];
+        all.extend_from_slice(words);
+        refused(&folder, &["eval", "scene.toml", "--points", "p.csv"], &all);
+    }
+    folder.write("p.csv", "x,y\n0,0\n");
+    let arguments = ["eval", "scene.toml", "--points", "p.csv", "--device", "virtual", "--stage", "nominal"];
+    refused(&folder, &arguments, &["--stage", "final"]);
+}
+
+#[test]
+fn devices() {
+    let folder = Folder::new("device");
+    folder.write("scene.toml", SCENE);
+    let run = |device: &str, words: &[&str]| refused(&folder, &["run", "scene.toml", "--device", device], words);
+    run("udp:nowhere.invalid:9000", &["nowhere.invalid"]);
+    run("serial:/dev/none", &["/dev/none"]);
+    // Somebody listens there, and never answers.
+    let silent = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
+    let address = format!("udp:{}", silent.local_addr().unwrap());
+    let ended = folder.run(&["run", "scene.toml", "--device", &address]);
+    assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+    assert!(ended.stderr.contains("did not answer"), "{}", ended.stderr);
+    // Words clap refuses.
+    for bad in [&["run", "--device", "qmeu"][..], &["run", "--duration", "-1"], &["fly"], &["run", "--fast"]] {
+        let ended = folder.run(bad);
+        assert_eq!(ended.code, Some(2), "{bad:?}");
+        assert!(!ended.stderr.contains("panicked"));
+    }
+}
+
+#[test]
+fn a_missing_emulator_is_named_with_the_command_that_installs_it() {
+    let folder = Folder::new("emulator");
+    folder.write("scene.toml", SCENE);
+    let ended = programs::run_with(
+        &folder.0,
+        ["run", "scene.toml", "--device", "qemu"],
+        &[("PATH", Path::new("/nonexistent").to_str().unwrap())],
+    )
+    .unwrap();
+    assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+    assert!(ended.stderr.contains("apt-get install qemu-system-arm"), "{}", ended.stderr);
+}

@@ -1,0 +1,90 @@
+//! Runs in real time, on every device that needs no hardware, with bounds wide enough for a busy machine.
+
+use pliant_tests::programs::{self, root};
+use serde_json::Value;
+
+fn timed(device: &str) -> Value {
+    let folder = std::env::temp_dir();
+    let scene = root().join("scenes/sbend-foam.toml");
+    let arguments = ["run", scene.to_str().unwrap(), "--device", device, "--headless", "--json"];
+    let ended = programs::run(&folder, arguments).unwrap();
+    assert_eq!(ended.code, Some(0), "{device}: {}{}", ended.stdout, ended.stderr);
+    let report = ended.json();
+    assert_eq!(report["reached"], true);
+    assert!(report["min_gamma"].as_f64().unwrap() > 1.0, "{report}");
+    assert!(report["missed"].is_u64() && report["time_to_goal_s"].is_f64(), "{report}");
+    for percentile in ["p50", "p99", "max"] {
+        assert!(report["rtt_us"][percentile].as_f64().unwrap() > 0.0, "{report}");
+    }
+    println!("{device}: {report:#}");
+    report
+}
+
+#[test]
+fn virtual_device_at_1_khz() {
+    let report = timed("virtual");
+    assert!(report["ticks"].as_u64().unwrap() > 1000, "{report}");
+}
+
+#[test]
+fn qemu_over_udp_at_1_khz() {
+    let report = timed("qemu");
+    assert_eq!(report["board"], "mps2-an386");
+    assert!(report["ticks"].as_u64().unwrap() > 1000, "{report}");
+}
+
+#[test]
+fn qemu_over_its_uart() {
+    let report = timed("qemu-serial");
+    assert_eq!(report["board"], "mps2-an386");
+}
+
+#[test]
+fn stepped_over_the_uart_has_the_bits_of_the_virtual_device() {
+    let folder = std::env::temp_dir();
+    let scene = root().join("scenes/reach-spatial.toml");
+    let run = |device: &str| {
+        let scene = scene.to_str().unwrap();
+        // Half a second of it: the emulated UART is slow.
+        let arguments = ["run", scene, "--device", device, "--stepped", "--headless", "--json", "--duration", "0.3"];
+        let ended = programs::run(&folder, arguments).unwrap();
+        assert_eq!(ended.code, Some(1), "too short to arrive: {}", ended.stderr);
+        ended.json()
+    };
+    assert_eq!(run("virtual")["runs"], run("qemu-serial")["runs"]);
+}
+
+#[test]
+fn no_emulator_outlives_its_run() {
+    let folder = std::env::temp_dir();
+    let scene = root().join("scenes/sbend-foam.toml");
+    let mut child = std::process::Command::new(programs::pliant().unwrap())
+        .current_dir(&folder)
+        .args(["run", scene.to_str().unwrap(), "--device", "qemu", "--headless"])
+        .spawn()
+        .unwrap();
+    let emulators = |parent: u32| {
+        let found =
+            std::process::Command::new("pgrep").args(["-P", &parent.to_string(), "qemu-system"]).output().unwrap();
+        String::from_utf8(found.stdout).unwrap().lines().map(|l| l.parse::<u32>().unwrap()).collect::<Vec<_>>()
+    };
+    let deadline = std::time::Instant::now() + std::time::Duration::from_secs(300);
+    let pids = loop {
+        let pids = emulators(child.id());
+        if !pids.is_empty() {
+            break pids;
+        }
+        assert!(std::time::Instant::now() < deadline && child.try_wait().unwrap().is_none(), "QEMU never started");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    };
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let alive = |pid: &u32| std::path::Path::new(&format!("/proc/{pid}")).exists();
+    for _ in 0..100 {
+        if !pids.iter().any(alive) {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    panic!("QEMU {pids:?} is still there");
+}
