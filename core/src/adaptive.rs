@@ -92,8 +92,8 @@ fn fixed<S: Scalar, const D: usize>(
         let r = n.arm / norm(&n.arm);
         let mut push = r;
         (push[0], push[1]) = (cos * r[0] - sin * r[1], sin * r[0] + cos * r[1]);
-        // sgn(cos(theta_2 - theta_1)), without the angles
-        if cos * n.first_axis[0] + sin * n.first_axis[1] < S::zero() {
+        // sgn(cos(theta_2 - theta_1)), without the angles; rounding must not decide at a right angle
+        if cos * n.first_axis[0] + sin * n.first_axis[1] < S::from_f64(-1e-6) {
             push = -push;
         }
         if alone {
@@ -131,11 +131,10 @@ fn with_flow<S: Scalar, const D: usize>(
         faster += along * (alone * speed_up(gain, n).min(largest));
         slower += along * (phi * pairs);
     }
-    let (slowing, bound) = (norm(&slower), S::from_f64(SLOWEST) * norm(&u));
-    if slowing > bound {
-        slower *= bound / slowing;
-    }
-    u + faster - slower
+    // The whole flow is slowed, not its tangents: subtracting one obstacle's tangent could point into another's core.
+    let (slowing, speed) = (norm(&slower), norm(&u));
+    let share = if slowing > S::zero() { (slowing / speed).min(S::from_f64(SLOWEST)) } else { S::zero() };
+    u * (S::one() - share) + faster
 }
 
 /// 0 at the shell, 1 from a thin band on inwards.

@@ -85,7 +85,7 @@ fn scenes() {
         ("stiffness = 1.6487", "rotation = [1.0, 0.0, 0.0, 0.0]", 13, &["rotation"]),
         ("stiffness = 1.6487", "reference = [0.05, 0.0]", 13, &["reference", "core"]),
         ("stiffness = 1.6487", "margin = [0.5, 1.0]", 13, &["margin"]),
-        ("center = [0.25, 0.01]", "center = [0.0, 0.01]", 2, &["attractor", "core"]),
+        ("center = [0.25, 0.01]", "center = [0.0, 0.01]", 12, &["center", "attractor", "core"]),
         ("center = [0.25, 0.01]", "center = [0.5, 0.01]", 8, &["position", "core"]),
         ("position = [0.5, 0.0]", "position = [0.5, nan]", 8, &["position"]),
         ("position = [0.5, 0.0]", "position = [5000.0, 0.0]", 8, &["position", "1000"]),

@@ -130,7 +130,8 @@ impl<S: ByteStream> Link for Serial<S> {
 
 impl ByteStream for serial2::SerialPort {
     fn read(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
-        self.set_read_timeout(timeout.max(Duration::from_millis(1)))?;
+        // Counted in whole milliseconds; zero does not wait.
+        self.set_read_timeout(if timeout.is_zero() { timeout } else { timeout.max(Duration::from_millis(1)) })?;
         match serial2::SerialPort::read(self, bytes) {
             Ok(0) => Err(io::Error::new(io::ErrorKind::BrokenPipe, "the serial port was closed")),
             Err(e) if is_pause(&e) => Ok(0),
@@ -144,7 +145,10 @@ impl ByteStream for serial2::SerialPort {
 
 impl ByteStream for std::net::TcpStream {
     fn read(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
-        self.set_read_timeout(Some(timeout.max(Duration::from_millis(1))))?;
+        self.set_nonblocking(timeout.is_zero())?;
+        if !timeout.is_zero() {
+            self.set_read_timeout(Some(timeout))?;
+        }
         match io::Read::read(self, bytes) {
             Ok(0) => Err(io::Error::new(io::ErrorKind::BrokenPipe, "the other end closed the connection")),
             Err(e) if is_pause(&e) => Ok(0),
@@ -152,6 +156,7 @@ impl ByteStream for std::net::TcpStream {
         }
     }
     fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.set_nonblocking(false)?;
         io::Write::write_all(self, bytes)
     }
 }

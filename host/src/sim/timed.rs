@@ -15,6 +15,8 @@ use crate::scene::Scene;
 
 /// Ticks between two states on a link that cannot carry more.
 const SLOW_TICKS: u64 = 10;
+/// Most messages taken in one tick; a device sends one command a tick and answers what it is sent.
+const EVENTS: usize = 100;
 /// States under way whose command has not come; older ones are given up.
 const UNDER_WAY: usize = 256;
 
@@ -61,7 +63,8 @@ pub(super) fn drive(
         let end = begin + Duration::from_secs_f64((tick + 1) as f64 * TICK);
         let late = Instant::now().saturating_duration_since(end).as_millis() as u64;
         log.missed(u64::from(late > 0));
-        loop {
+        // Bounded, so that a host that is late and a device that talks without pause still get to the next tick.
+        for _ in 0..EVENTS {
             let left = end.saturating_duration_since(Instant::now());
             match session.event(left)? {
                 Some(Event::Command(command)) => {
