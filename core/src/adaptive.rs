@@ -69,15 +69,20 @@ fn others<'a, S: Scalar, const D: usize>(
     soft(around).filter(move |m| !core::ptr::eq(*m, n))
 }
 
-/// c / Gamma_k^2
+/// c / Gamma_k^2, m/s
 fn speed_up<S: Scalar, const D: usize>(gain: S, n: &Sample<S, D>) -> S {
-    gain / (n.gamma_soft * n.gamma_soft)
+    amplitude(gain, n.gamma_soft)
 }
 
-/// c (2 / (Gamma_k,n + Gamma_k,m))^2
+/// c (2 / (Gamma_k,n + Gamma_k,m))^2, m/s
 fn slow_down<S: Scalar, const D: usize>(gain: S, n: &Sample<S, D>, m: &Sample<S, D>) -> S {
-    let ratio = S::from_f64(2.0) / (n.gamma_soft + m.gamma_soft);
-    gain * ratio * ratio
+    amplitude(gain, (n.gamma_soft + m.gamma_soft) * S::from_f64(0.5))
+}
+
+/// Deep under a very thick layer the square would leave the range of f32; no limit lets through what is cut here.
+fn amplitude<S: Scalar>(gain: S, gamma_soft: S) -> S {
+    let gamma = gamma_soft.max(S::from_f64(1e-9));
+    (gain / (gamma * gamma)).min(S::from_f64(1e6))
 }
 
 fn fixed<S: Scalar, const D: usize>(

@@ -8,19 +8,19 @@ use crate::{Scalar, Vector, is_zero, norm};
 /// The velocity past one obstacle:
 ///
 /// ```text
-/// xdot = s + M (f - s),   M u = (1 + 1/G) u - (2/G) ((g.u)/(g.r)) r,   G = max(Gamma, 1)
+/// xdot = s + M (f - s),   M u = (1 + 1/G) u - (2/G) ((n.u)/(n.r)) r,   G = max(Gamma, 1),   n = g/|g|
 /// ```
 ///
 /// which is E D E^-1 with E = [r/|r|, tangents of g] and D = diag(1 - 1/G, 1 + 1/G, ...): u minus its part along r (split by the tangent
 /// plane) is tangential and stretched, the part along r is compressed. `None` where g.r is not positive.
 fn past_one<S: Scalar, const D: usize>(f: &Vector<S, D>, o: &Sample<S, D>) -> Option<Vector<S, D>> {
-    let along = o.gradient.dot(&o.arm);
-    if !(along > S::from_f64(1e-6) * norm(&o.gradient) * norm(&o.arm)) {
+    let along = o.normal.dot(&o.arm);
+    if !(along > S::from_f64(1e-6) * norm(&o.arm)) {
         return None;
     }
     let u = f - o.surface_velocity;
     let inverse = S::one() / o.gamma.max(S::one());
-    let radial = (inverse + inverse) * o.gradient.dot(&u) / along;
+    let radial = (inverse + inverse) * o.normal.dot(&u) / along;
     Some(o.surface_velocity + u * (S::one() + inverse) - o.arm * radial)
 }
 
@@ -138,7 +138,7 @@ mod tests {
 
     /// E D E^-1 as the papers write it.
     fn explicit<const D: usize>(f: &Vector<f64, D>, o: &Sample<f64, D>) -> Vector<f64, D> {
-        let n = o.gradient.normalize();
+        let n = o.normal;
         let mut e = Matrix::<f64, D>::identity();
         let first = n.iamax();
         e.swap_columns(0, first);

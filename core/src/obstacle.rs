@@ -148,7 +148,12 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// dGamma/dx, 1/m.
     pub fn gradient(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        self.gradient_at(&self.local(x))
+        let two_p = S::from_f64(2.0 * f64::from(self.spec.curvature));
+        let local = self.local(x).zip_map(&self.hard, |q, inverse| {
+            let u = q * inverse;
+            two_p * (u * u).powi(self.spec.curvature.saturating_sub(1)) * u * inverse
+        });
+        self.spec.rotation * local
     }
 
     /// The velocity of the obstacle's matter at x, m/s: v + w x (x - c).
@@ -168,13 +173,12 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         if !(gamma < S::from_f64(FAR)) {
             return (S::MAX, None);
         }
-        let gradient = self.gradient_at(&q);
+        let gradient = self.outward(&q);
         let length = norm(&gradient);
         let normal = if length > S::zero() { gradient / length } else { Vector::zeros() };
         let sample = Sample {
             gamma,
             gamma_soft: level(&q, &self.soft, self.spec.curvature),
-            gradient,
             normal,
             arm: x - self.reference(),
             // A growing surface also comes towards x, at most at the rate of its axes.
@@ -212,12 +216,15 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.spec.rotation.tr_mul(&(x - self.spec.center))
     }
 
-    fn gradient_at(&self, q: &Vector<S, D>) -> Vector<S, D> {
+    /// The direction of dGamma/dx, of a length that neither overflows nor underflows, wherever x and whatever p.
+    fn outward(&self, q: &Vector<S, D>) -> Vector<S, D> {
         let p = self.spec.curvature;
-        let two_p = S::from_f64(2.0 * f64::from(p));
-        let local = q.zip_map(&self.hard, |q, inverse| {
-            let u = q * inverse;
-            two_p * (u * u).powi(p.saturating_sub(1)) * u * inverse
+        let u = q.component_mul(&self.hard);
+        let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
+        let scale = if p > 1 && largest > S::zero() { S::one() / largest } else { S::one() };
+        let local = u.zip_map(&self.hard, |u, inverse| {
+            let t = u * scale;
+            (t * t).powi(p.saturating_sub(1)) * t * inverse
         });
         self.spec.rotation * local
     }
@@ -236,9 +243,7 @@ fn level<S: Scalar, const D: usize>(q: &Vector<S, D>, inverse: &Vector<S, D>, p:
 pub(crate) struct Sample<S: Scalar, const D: usize> {
     pub gamma: S,
     pub gamma_soft: S,
-    /// dGamma/dx, 1/m; its length matters to nobody.
-    pub gradient: Vector<S, D>,
-    /// The gradient's direction; zero at the centre.
+    /// n, the direction of dGamma/dx; zero at the centre.
     pub normal: Vector<S, D>,
     /// r, from the reference point to x, m.
     pub arm: Vector<S, D>,

@@ -1,4 +1,5 @@
 //! What is wrong gets one clear message - file, line, field, what is allowed - and exit 2, never a panic.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

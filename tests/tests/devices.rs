@@ -1,4 +1,5 @@
 //! Runs in real time, on every device that needs no hardware, with bounds wide enough for a busy machine.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
 use pliant_tests::programs::{self, root};
 use serde_json::Value;

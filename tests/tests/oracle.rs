@@ -1,4 +1,5 @@
 //! The core, and `pliant eval`, against the independent evaluation: to 1e-9 in f64, in 2-D and 3-D, 1 to 10 obstacles, p = 1 to 3.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;
 
@@ -56,28 +57,24 @@ fn motion<const D: usize>(motion: &OracleMotion) -> Motion<f64, D> {
 }
 
 fn obstacle<const D: usize>(o: &OracleObstacle) -> Obstacle<f64, D> {
-    let (turn, spin) = match (o.rotation, o.spin) {
-        (turn, spin) => (
-            match turn {
-                OracleRotation::Angle(a) => rotation::spatial([(a / 2.0).cos(), 0.0, 0.0, (a / 2.0).sin()]).unwrap(),
-                OracleRotation::Quaternion(q) => rotation::spatial(q).unwrap(),
-            },
-            match spin {
-                OracleSpin::Planar(rate) => rotation::spatial_spin(&Vector::<f64, 3>::new(0.0, 0.0, rate)),
-                OracleSpin::Spatial(rate) => rotation::spatial_spin(&rate.into()),
-            },
-        ),
+    let turn = match o.rotation {
+        OracleRotation::Angle(a) => [(a / 2.0).cos(), 0.0, 0.0, (a / 2.0).sin()],
+        OracleRotation::Quaternion(q) => q,
+    };
+    let spin = match o.spin {
+        OracleSpin::Planar(rate) => [0.0, 0.0, rate],
+        OracleSpin::Spatial(rate) => rate,
     };
     Obstacle::new(ObstacleSpec {
         center: vector(&o.center),
-        rotation: cut(turn),
+        rotation: cut(rotation::spatial(turn).unwrap()),
         axes: vector(&o.axes),
         soft_ratio: vector(&o.soft_ratio),
         margin: vector(&o.margin),
         curvature: o.curvature,
         reference: vector(&o.reference),
         velocity: vector(&o.velocity),
-        spin: cut(spin),
+        spin: cut(rotation::spatial_spin(&spin.into())),
     })
     .unwrap()
 }

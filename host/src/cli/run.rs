@@ -120,6 +120,7 @@ fn as_json(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Option<
         "min_gamma": finite(runs.min_gamma()),
         "time_to_goal_s": runs.time_to_goal(),
         "rtt_us": runs.rtt_us,
+        "statistics": runs.statistics,
         "figure": figure,
         "runs": each,
     })

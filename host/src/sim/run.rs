@@ -1,7 +1,7 @@
 //! A scene from every one of its starts.
 
 use nalgebra::Vector3;
-use pliant_protocol::message::Region;
+use pliant_protocol::message::{Region, Statistics};
 use pliant_protocol::{ToDevice, checksum};
 
 use super::{Latency, stepped, timed};
@@ -71,6 +71,8 @@ pub struct Runs {
     pub runs: Vec<Run>,
     /// From a state sent to its command received, us.
     pub rtt_us: Latency,
+    /// What the device counted since it started.
+    pub statistics: Statistics,
 }
 
 impl Runs {
@@ -116,7 +118,8 @@ pub fn run_scene(
         runs.push(log.finish());
     }
     let mut times: Vec<f64> = runs.iter().flat_map(|r| r.round_trips.iter().copied()).collect();
-    Ok(Runs { runs, rtt_us: Latency::of(&mut times) })
+    let statistics = session.statistics()?;
+    Ok(Runs { runs, rtt_us: Latency::of(&mut times), statistics })
 }
 
 /// Uploads the skill and the settings of a scene, after checking that the device has room for it.
@@ -189,7 +192,7 @@ impl<'a> Log<'a> {
             }
         }
         let arrived = self.distance(&position) <= self.scene.goal().tolerance;
-        if self.seen % KEPT_TICKS == 0 || arrived {
+        if self.seen.is_multiple_of(KEPT_TICKS) || arrived {
             self.run.path.push(PathPoint { time, position, velocity, region });
         }
         self.seen += 1;

@@ -30,7 +30,7 @@ pub(super) fn drive(
         if log.moved(time, robot.position, robot.velocity, region) || time >= patience {
             break;
         }
-        if tick % PERCEPTION_TICKS == 0 {
+        if u64::is_multiple_of(tick, PERCEPTION_TICKS) {
             for sighting in sightings(scene, time, *clock) {
                 session.request("an obstacle", &sighting)?;
             }

@@ -47,13 +47,13 @@ pub(super) fn drive(
         if log.moved(time, robot.position, robot.velocity, region) || time >= patience {
             break;
         }
-        if tick % PERCEPTION_TICKS == 0 {
+        if u64::is_multiple_of(tick, PERCEPTION_TICKS) {
             for sighting in sightings(scene, time, *clock) {
                 session.send(&sighting)?;
             }
             watch(time, log.distance(&robot.position));
         }
-        if tick % state_ticks == 0 {
+        if u64::is_multiple_of(tick, state_ticks) {
             let state = ToDevice::State { stamp: *clock, position: wire::vector(&robot.position) };
             if under_way.len() == UNDER_WAY {
                 under_way.pop_front();
