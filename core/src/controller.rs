@@ -3,7 +3,9 @@
 use crate::adaptive::{adapt, is_soft};
 use crate::modulation::modulate;
 use crate::table::Surroundings;
-use crate::{Ageing, Limits, Motion, Region, Scalar, Status, SteeringPolicy, Table, Vector, in_range};
+use crate::{
+    Ageing, Limits, Motion, Obstacle, Region, Scalar, Status, SteeringPolicy, Table, TableFull, Vector, in_range,
+};
 
 /// How obstacles bend the motion, and what the robot may be asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -146,8 +148,12 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
     /// One step of `dt` seconds: the velocity to drive with from now on, and time passes for the obstacles.
     pub fn tick(&mut self, state: &RobotState<S, D>, dt: S) -> Command<S, D> {
         let stages = self.evaluate(state);
-        let (velocity, limited) = self.settings.limits.apply(stages.adapted, &self.previous, dt);
-        let status = stages.status | limited | self.table.status(&self.settings.ageing);
+        let (mut velocity, limited) = self.settings.limits.apply(stages.adapted, &self.previous, dt);
+        let mut status = stages.status | limited | self.table.status(&self.settings.ageing);
+        if !velocity.iter().all(|v| v.is_finite()) {
+            velocity = Vector::zeros();
+            status |= Status::NOT_FINITE;
+        }
         self.pass(velocity, dt);
         Command { velocity, gamma: stages.gamma, nearest: stages.nearest, region: stages.region, status }
     }
@@ -160,6 +166,19 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         let status = Status::LATE | self.table.status(&self.settings.ageing);
         self.pass(velocity, dt);
         Command { velocity, gamma: around.gamma, nearest: around.nearest, region: region(&around), status }
+    }
+
+    /// Time passes without a command: obstacles move on and age.
+    pub fn wait(&mut self, dt: S) {
+        self.pass(Vector::zeros(), dt);
+    }
+
+    /// Puts an obstacle into the table; see [`Table::upsert`].
+    ///
+    /// # Errors
+    /// [`TableFull`]; then nothing has changed.
+    pub fn upsert(&mut self, id: u16, obstacle: Obstacle<S, D>, age: S) -> Result<(), TableFull> {
+        self.table.upsert(id, obstacle, age, &self.settings.ageing)
     }
 
     /// All stages that depend on the position alone; nothing changes.

@@ -196,6 +196,21 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         }
     }
 
+    /// Carries the pose on by a time that may be long: in steps that turn it little, at most 100.
+    pub(crate) fn carry(&mut self, time: S) {
+        let fastest = self.spec.spin.iter().fold(S::zero(), |m, x| m.max(x.abs()));
+        let wanted = fastest * time * S::from_f64(20.0);
+        let mut steps = S::one();
+        while steps < wanted && steps < S::from_f64(100.0) {
+            steps += S::one();
+        }
+        let mut left = steps;
+        while left > S::zero() {
+            self.advance(time / steps);
+            left -= S::one();
+        }
+    }
+
     /// Makes every hard semi-axis longer for `dt` seconds at `rate` m/s. The soft layer stays where it is: margin wins over softness.
     pub(crate) fn grow(&mut self, rate: S, dt: S) {
         self.growing = rate;
@@ -221,7 +236,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let p = self.spec.curvature;
         let u = q.component_mul(&self.hard);
         let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
-        let scale = if p > 1 && largest > S::zero() { S::one() / largest } else { S::one() };
+        let scale = if p > 1 && largest > S::from_f64(1e-30) { S::one() / largest } else { S::one() };
         let local = u.zip_map(&self.hard, |u, inverse| {
             let t = u * scale;
             (t * t).powi(p.saturating_sub(1)) * t * inverse

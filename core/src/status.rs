@@ -32,5 +32,7 @@ bitflags! {
         const HELD = 1 << 4;
         /// No fresh robot state: the command ramps to zero.
         const LATE = 1 << 5;
+        /// The arithmetic left the range of numbers: the command is zero. No input is known to do this.
+        const NOT_FINITE = 1 << 6;
     }
 }

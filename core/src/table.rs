@@ -51,12 +51,13 @@ pub struct TableFull;
 /// At most `CAP` obstacles by their identifiers.
 ///
 /// ```
-/// use pliant_core::{Obstacle, ObstacleSpec, Table, TableFull};
+/// use pliant_core::{Ageing, Obstacle, ObstacleSpec, Table, TableFull};
 /// let ball = || Obstacle::new(ObstacleSpec::<f32, 2>::default()).unwrap();
 /// let mut table: Table<f32, 2, 1> = Table::new();
-/// table.upsert(7, ball(), 0.0).unwrap();
-/// table.upsert(7, ball(), 0.0).unwrap(); // the same one again
-/// assert_eq!(table.upsert(8, ball(), 0.0), Err(TableFull));
+/// let ageing = Ageing::default();
+/// table.upsert(7, ball(), 0.0, &ageing).unwrap();
+/// table.upsert(7, ball(), 0.0, &ageing).unwrap(); // the same one again
+/// assert_eq!(table.upsert(8, ball(), 0.0, &ageing), Err(TableFull));
 /// assert!(table.remove(7) && table.is_empty());
 /// ```
 #[derive(Clone, Debug, Default)]
@@ -72,13 +73,26 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     }
 
     /// Puts an obstacle in, or in the place of the one with the same identifier. `age` is how many seconds ago it was seen as
-    /// described; it is carried on by its velocity to now.
+    /// described; it is carried on to now as [`Table::advance`] would have done.
     ///
     /// # Errors
     /// [`TableFull`]; then nothing has changed.
-    pub fn upsert(&mut self, id: u16, mut obstacle: Obstacle<S, D>, age: S) -> Result<(), TableFull> {
+    pub fn upsert(
+        &mut self,
+        id: u16,
+        mut obstacle: Obstacle<S, D>,
+        age: S,
+        ageing: &Ageing<S>,
+    ) -> Result<(), TableFull> {
+        let age = age.max(S::zero()).min(ageing.hold);
         if age > S::zero() {
-            obstacle.advance(age);
+            obstacle.carry(age);
+        }
+        if age > ageing.time_to_live {
+            obstacle.grow(ageing.growth, age - ageing.time_to_live);
+        }
+        if age >= ageing.hold {
+            obstacle.hold();
         }
         let entry = Entry { id, obstacle, age };
         match self.entries.iter_mut().find(|e| e.id == id) {
@@ -130,6 +144,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         for entry in &mut self.entries {
             // Beyond the hold time nothing changes, so the age may stop there too and never loses its last digit.
             if entry.age >= ageing.hold {
+                entry.obstacle.hold();
                 continue;
             }
             entry.obstacle.advance(dt);
@@ -137,9 +152,6 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 entry.obstacle.grow(ageing.growth, dt);
             }
             entry.age += dt;
-            if entry.age >= ageing.hold {
-                entry.obstacle.hold();
-            }
         }
     }
 
@@ -199,7 +211,7 @@ mod tests {
     fn an_old_obstacle_moves_then_grows_then_is_held() {
         let ageing = Ageing::default();
         let mut table: Table<f64, 2, 2> = Table::new();
-        table.upsert(1, moving(), 0.05).unwrap();
+        table.upsert(1, moving(), 0.05, &ageing).unwrap();
         let x = |t: &Table<f64, 2, 2>| t.iter().next().unwrap().obstacle().spec().center.x;
         let gamma = |t: &Table<f64, 2, 2>| {
             let o = t.iter().next().unwrap().obstacle();
@@ -226,9 +238,37 @@ mod tests {
     }
 
     #[test]
+    fn an_old_sighting_is_as_if_it_had_aged_here() {
+        let ageing = Ageing::default();
+        let spin = crate::rotation::planar_spin(5.0);
+        let velocity = Vector::<f64, 2>::new(0.1, -0.2);
+        let axes = Vector::<f64, 2>::new(0.08, 0.04);
+        let turning = || Obstacle::new(ObstacleSpec { velocity, spin, axes, ..ObstacleSpec::default() }).unwrap();
+        for milliseconds in [0, 50, 300, 999, 1000, 5000] {
+            let (mut here, mut there): (Table<f64, 2, 1>, Table<f64, 2, 1>) = (Table::new(), Table::new());
+            here.upsert(1, turning(), 0.0, &ageing).unwrap();
+            for _ in 0..milliseconds {
+                here.advance(0.001, &ageing);
+            }
+            there.upsert(1, turning(), f64::from(milliseconds) * 0.001, &ageing).unwrap();
+            for table in [&mut here, &mut there] {
+                table.advance(0.001, &ageing);
+            }
+            let x = Vector::<f64, 2>::new(0.3, 0.1);
+            let look = |t: &Table<f64, 2, 1>| {
+                let o = t.iter().next().unwrap().obstacle();
+                [o.gamma(&x), o.surface_velocity(&x).x, o.surface_velocity(&x).y]
+            };
+            for (a, b) in look(&here).into_iter().zip(look(&there)) {
+                assert!((a - b).abs() < 5e-3 * (1.0 + a.abs()), "{milliseconds} ms: {a} {b}");
+            }
+        }
+    }
+
+    #[test]
     fn every_change_has_its_revision() {
         let mut table: Table<f64, 2, 2> = Table::new();
-        table.upsert(1, moving(), 0.0).unwrap();
+        table.upsert(1, moving(), 0.0, &Ageing::default()).unwrap();
         table.advance(0.001, &Ageing::default());
         assert_eq!(table.revision(), 1);
         assert!(!table.remove(2));

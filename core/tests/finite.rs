@@ -103,7 +103,7 @@ fn check<S: Scalar, const D: usize>(
     let motion = Motion::linear(attractor, S::one()).unwrap();
     let mut controller: Controller<S, D, 8> = Controller::new(motion, settings);
     for (id, o) in obstacles.into_iter().enumerate() {
-        controller.table_mut().upsert(id as u16, o, S::zero()).unwrap();
+        controller.upsert(id as u16, o, S::zero()).unwrap();
     }
     let command = controller.tick(&state, S::from_f64(0.001));
     let speed = command.velocity.dot(&command.velocity).sqrt();

@@ -3,13 +3,17 @@
 use pliant_core::Settings;
 use pliant_protocol::message::{self, DeviceError, Mode, StopReason, TickMode, ToHost};
 
-use crate::TICK_HZ;
 use crate::space::{AnyMotion, AnyObstacle, AnyState, Flat, OtherDimension, Space};
+use crate::{TICK, TICK_HZ};
 
-/// Ticks without a fresh robot state after which the command ramps to zero.
+/// Ticks (ms) without a fresh robot state after which the command ramps to zero.
 pub const LATE_TICKS: u32 = 20;
-/// Ticks without any frame after which the device stops, until it is armed again.
+/// Ticks (ms) without a frame from the host after which the device stops, until it is armed again.
 pub const LOST_TICKS: u32 = 200;
+/// The same in a stepped run, where a host may think long between two states.
+pub const LOST_STEPPED_TICKS: u32 = 10_000;
+/// Most ticks that obstacles are carried on by at once, after the clock had no chance to run.
+const CATCH_UP_TICKS: u32 = 100;
 
 /// The mode, the skill, the obstacles and the newest state.
 ///
@@ -20,13 +24,18 @@ pub struct Control {
     settings: Settings<f32>,
     mode: Mode,
     tick_mode: TickMode,
-    /// Ticks computed since the start.
+    /// Ticks that were due since the start, computed or not: the device's time, in ms. In a stepped run, the states that came.
     tick: u32,
+    /// Ticks due since the last one that was computed.
+    due: u32,
+    computed: u32,
     missed: u32,
     late: u32,
     latest: Option<Latest>,
-    /// The tick at which the last frame came.
-    heard: u32,
+    /// What the host's clock showed at which tick.
+    clock: Option<Reading>,
+    /// Periods of the device's own clock since the last frame from the host.
+    silence: u32,
     report: Option<ToHost>,
 }
 
@@ -35,9 +44,13 @@ pub struct Control {
 struct Latest {
     state: AnyState,
     sequence: u16,
-    /// Host's clock, us.
+    tick: u32,
+}
+
+/// The host's clock, us, as it was at one of the device's ticks.
+#[derive(Clone, Copy, Debug)]
+struct Reading {
     stamp: u64,
-    /// Device's clock.
     tick: u32,
 }
 
@@ -56,22 +69,36 @@ impl Control {
             mode: Mode::Idle,
             tick_mode: TickMode::Timed,
             tick: 0,
+            due: 0,
+            computed: 0,
             missed: 0,
             late: 0,
             latest: None,
-            heard: 0,
+            clock: None,
+            silence: 0,
             report: None,
         }
     }
 
     /// The device's own clock has come to a tick. `overdue` counts the ticks before it that were due and had no chance to run.
     /// What is to be said about it is in [`Control::take_report`].
+    ///
+    /// A tick that comes late computes nothing: if the computation is what takes too long, the links still get their turn, and with them
+    /// a stop.
     pub fn tick(&mut self, overdue: u32) {
+        let periods = overdue.saturating_add(1);
+        self.silence = self.silence.saturating_add(periods);
+        self.watch_link();
         if self.tick_mode == TickMode::Stepped {
             return;
         }
-        self.missed = self.missed.saturating_add(overdue);
-        self.watch();
+        self.tick = self.tick.wrapping_add(periods);
+        self.due = self.due.saturating_add(periods);
+        if overdue > 0 {
+            self.missed = self.missed.saturating_add(periods);
+            return;
+        }
+        self.watch_state();
         self.step();
     }
 
@@ -90,7 +117,7 @@ impl Control {
         self.mode
     }
 
-    /// Ticks computed since the start.
+    /// The number of the tick that comes next.
     pub fn ticks(&self) -> u32 {
         self.tick
     }
@@ -101,19 +128,29 @@ impl Control {
     }
 
     pub(crate) fn counters(&self) -> message::Statistics {
-        let (ticks, missed, late) = (self.tick, self.missed, self.late);
+        let (ticks, missed, late) = (self.computed, self.missed, self.late);
         message::Statistics { ticks, missed, late, ..message::Statistics::default() }
     }
 
-    /// A frame came, whatever was in it.
+    /// A frame came from the host, whatever was in it.
     pub(crate) fn heard(&mut self) {
-        self.heard = self.tick;
+        self.silence = 0;
+    }
+
+    /// Another host, with another clock.
+    pub(crate) fn greeted(&mut self) {
+        (self.clock, self.silence) = (None, 0);
+    }
+
+    /// Is it the host's turn to be disturbed by nobody?
+    pub(crate) fn is_busy(&self) -> bool {
+        matches!(self.mode, Mode::Armed | Mode::Running | Mode::Degraded)
     }
 
     pub(crate) fn arm(&mut self, tick_mode: TickMode) -> Result<(), DeviceError> {
         let space = self.space.as_mut().ok_or(DeviceError::NoModel)?;
         space.rest();
-        (self.tick_mode, self.mode, self.latest) = (tick_mode, Mode::Armed, None);
+        (self.tick_mode, self.mode, self.latest, self.report) = (tick_mode, Mode::Armed, None, None);
         Ok(())
     }
 
@@ -122,6 +159,8 @@ impl Control {
             space.rest();
         }
         self.mode = Mode::Stopped(reason);
+        // A command that was computed and not yet sent must not follow the answer to the stop.
+        self.report = None;
     }
 
     pub(crate) fn configure(&mut self, settings: Settings<f32>) {
@@ -133,13 +172,12 @@ impl Control {
 
     /// A new skill. One of the same dimension may come while the robot runs; another dimension is another workspace.
     pub(crate) fn set_motion(&mut self, motion: AnyMotion) -> Result<(), DeviceError> {
+        let busy = self.is_busy();
         match &mut self.space {
             Some(space) if space.dimension() == motion.dimension() => {
                 space.set_motion(motion).map_err(|OtherDimension| DeviceError::Dimension)
             }
-            Some(_) if matches!(self.mode, Mode::Armed | Mode::Running | Mode::Degraded) => {
-                Err(DeviceError::Mode(self.mode))
-            }
+            Some(_) if busy => Err(DeviceError::Mode(self.mode)),
             _ => {
                 self.space = Some(Space::new(motion, self.settings));
                 self.latest = None;
@@ -149,6 +187,9 @@ impl Control {
     }
 
     pub(crate) fn upsert(&mut self, id: u16, obstacle: AnyObstacle, stamp: u64) -> Result<(), DeviceError> {
+        if self.clock.is_none() {
+            self.clock = Some(Reading { stamp, tick: self.tick });
+        }
         let age = self.age(stamp);
         let space = self.space.as_mut().ok_or(DeviceError::NoModel)?;
         match space.upsert(id, obstacle, age) {
@@ -177,58 +218,66 @@ impl Control {
             Mode::Stopped(_) => {}
             Mode::Armed | Mode::Running | Mode::Degraded => self.mode = Mode::Running,
         }
-        self.latest = Some(Latest { state, sequence, stamp, tick: self.tick });
+        self.latest = Some(Latest { state, sequence, tick: self.tick });
+        self.clock = Some(Reading { stamp, tick: self.tick });
         if self.tick_mode == TickMode::Timed {
             return Ok(None);
         }
+        self.due = 1;
         self.step();
+        self.tick = self.tick.wrapping_add(1);
         Ok(self.take_report())
     }
 
-    /// Is the robot's state late, or the link lost?
-    fn watch(&mut self) {
-        if !matches!(self.mode, Mode::Armed | Mode::Running | Mode::Degraded) {
-            return;
-        }
-        let fresh = |l: &Latest| self.tick.wrapping_sub(l.tick) < LATE_TICKS;
-        if self.tick.wrapping_sub(self.heard) >= LOST_TICKS {
+    /// Is the link lost?
+    fn watch_link(&mut self) {
+        let limit = if self.tick_mode == TickMode::Timed { LOST_TICKS } else { LOST_STEPPED_TICKS };
+        if self.is_busy() && self.silence > limit {
             self.stop(StopReason::LinkLost);
-        } else if self.mode == Mode::Running && !self.latest.as_ref().is_some_and(fresh) {
+        }
+    }
+
+    /// Is the robot's state late?
+    fn watch_state(&mut self) {
+        let fresh = |l: &Latest| self.tick.wrapping_sub(l.tick) <= LATE_TICKS;
+        if self.mode == Mode::Running && !self.latest.as_ref().is_some_and(fresh) {
             self.mode = Mode::Degraded;
         }
     }
 
-    /// One tick: the command for the newest state, in the present mode.
+    /// One tick: the command for the newest state, in the present mode. Obstacles are carried on by all the time that was due.
     fn step(&mut self) {
-        let (Some(space), Some(latest)) = (&mut self.space, &self.latest) else {
-            self.tick = self.tick.wrapping_add(1);
+        let dt = TICK * core::mem::take(&mut self.due).min(CATCH_UP_TICKS) as f32;
+        self.computed = self.computed.wrapping_add(1);
+        let Some(space) = &mut self.space else { return };
+        let Some(latest) = &self.latest else {
+            space.wait(dt);
             return;
         };
         let revision = space.revision();
         let command = match self.mode {
-            Mode::Running => space.tick(&latest.state, true),
+            Mode::Running => space.tick(&latest.state, true, dt),
             Mode::Degraded => {
                 self.late = self.late.saturating_add(1);
-                space.tick(&latest.state, false)
+                space.tick(&latest.state, false, dt)
             }
             // At rest: the ramp from zero is zero, and obstacles go on being watched.
-            Mode::Idle | Mode::Armed | Mode::Stopped(_) => space.tick(&latest.state, false),
+            Mode::Idle | Mode::Armed | Mode::Stopped(_) => space.tick(&latest.state, false, dt),
         };
         if let Ok(command) = command {
             self.report = Some(report(&command, self.tick, latest.sequence, revision, self.mode));
         }
-        self.tick = self.tick.wrapping_add(1);
     }
 
-    /// Seconds since `stamp`, host's clock, in us: by the newest state's stamp and the ticks since then.
+    /// Seconds since `stamp`, host's clock, in us: by the newest reading of it and the ticks since then.
     fn age(&self, stamp: u64) -> f32 {
-        let Some(latest) = &self.latest else {
+        let Some(clock) = &self.clock else {
             return 0.0;
         };
-        let since = u64::from(self.tick.wrapping_sub(latest.tick)) * (1_000_000 / u64::from(TICK_HZ));
-        let age = latest.stamp.saturating_add(since).saturating_sub(stamp);
-        // A microsecond count this small is exact in f32; older is as good as held.
-        (age.min(10_000_000) as f32 * 1e-6).min(self.settings.ageing.hold)
+        let since = u64::from(self.tick.wrapping_sub(clock.tick)) * (1_000_000 / u64::from(TICK_HZ));
+        let age = clock.stamp.saturating_add(since).saturating_sub(stamp);
+        // A microsecond count this small is exact in f32; the table knows what to do with what is older than its hold time.
+        age.min(10_000_000) as f32 * 1e-6
     }
 }
 

@@ -39,16 +39,23 @@ pub struct Gauges {
     pub worst_tick_us: u32,
     /// Frames too long, or bytes lost because they came too fast.
     pub overruns: u32,
+    /// Frames damaged before they were whole: bad stuffing on a serial line.
+    pub damaged: u32,
 }
 
-/// The conversation with one host.
+/// The conversation with one host, among all who send frames. `P` tells peers apart: an address, or which line it is.
+///
+/// The host is who said hello last. While it has the device armed nobody can take its place; once the device has stopped - by request or
+/// because the host fell silent - the next hello does. Others are obeyed in one thing only: an emergency stop.
 #[derive(Debug)]
-pub struct Desk {
+pub struct Desk<P> {
     identity: Identity,
     /// What the board measures.
     pub gauges: Gauges,
-    greeted: bool,
+    host: Option<P>,
     upload: Upload,
+    /// The last upload was committed, so that a commit sent again because its answer was lost is answered alike.
+    committed: bool,
     dimension: Option<Dimension>,
     arrivals: Sequence,
     departures: u16,
@@ -61,14 +68,15 @@ pub struct Desk {
 
 type Dimension = InSpace<(), ()>;
 
-impl Desk {
+impl<P: Copy + PartialEq> Desk<P> {
     /// A desk that has heard of nobody yet.
     pub const fn new(identity: Identity) -> Self {
         Self {
             identity,
-            gauges: Gauges { stack_used: 0, worst_tick_us: 0, overruns: 0 },
-            greeted: false,
+            gauges: Gauges { stack_used: 0, worst_tick_us: 0, overruns: 0, damaged: 0 },
+            host: None,
             upload: Upload::new(),
+            committed: false,
             dimension: None,
             arrivals: Sequence::new(),
             departures: 0,
@@ -80,32 +88,40 @@ impl Desk {
         }
     }
 
-    /// Takes one frame, whatever its bytes; the answer, if it has one.
-    pub fn receive(&mut self, bytes: &[u8], control: &mut impl Locked) -> Option<ToHost> {
+    /// Who the commands go to.
+    pub fn host(&self) -> Option<P> {
+        self.host
+    }
+
+    /// Takes one frame from a peer, whatever its bytes; the answer, if it has one.
+    pub fn receive(&mut self, from: P, bytes: &[u8], control: &mut impl Locked) -> Option<ToHost> {
         let Frame { sequence, message } = match decode::<ToDevice>(bytes) {
             Ok(frame) => frame,
             Err(error) => return self.undecoded(error),
         };
         self.frames = self.frames.saturating_add(1);
-        control.with(Control::heard);
-        // An emergency stop is obeyed from anyone, in any order.
+        let known = self.host == Some(from);
+        // A stop is obeyed from anyone, in any order, and moves nobody's sequence but its sender's.
         if message == ToDevice::Stop {
-            let _ = self.arrivals.arrived(sequence);
+            if known {
+                let _ = self.arrivals.arrived(sequence);
+            }
             return Some(control.with(|c| {
                 c.stop(StopReason::Requested);
                 ack(c, sequence)
             }));
         }
         if let ToDevice::Hello { schema } = message {
-            return Some(self.hello(sequence, schema));
+            return Some(self.hello(from, sequence, schema, control));
         }
+        if !known {
+            return Some(self.refusal(sequence, DeviceError::NotGreeted));
+        }
+        control.with(Control::heard);
         match self.arrivals.arrived(sequence) {
             Arrival::Next => {}
             Arrival::After { lost } => self.lost = self.lost.saturating_add(u32::from(lost)),
             Arrival::Stale => return None,
-        }
-        if !self.greeted {
-            return Some(self.refusal(sequence, DeviceError::Schema { ours: SCHEMA }));
         }
         match self.serve(sequence, message, control) {
             Ok(answer) => answer,
@@ -120,11 +136,19 @@ impl Desk {
         Some(frame)
     }
 
-    fn hello(&mut self, sequence: u16, schema: u64) -> ToHost {
-        // One who speaks another schema is told ours, and disturbs nobody's session.
+    fn hello(&mut self, from: P, sequence: u16, schema: u64, control: &mut impl Locked) -> ToHost {
+        let mode = control.with(|c| if c.is_busy() { Some(c.mode()) } else { None });
+        match mode {
+            Some(mode) if self.host != Some(from) => return self.refusal(sequence, DeviceError::Mode(mode)),
+            _ => {}
+        }
+        // One who speaks another schema is told ours, and becomes nobody's successor.
         if schema == SCHEMA {
             self.arrivals.restart(sequence);
-            self.greeted = true;
+            if self.host != Some(from) {
+                self.host = Some(from);
+                control.with(Control::greeted);
+            }
         }
         let name = self.identity.board.get(..message::BOARD_MAX).unwrap_or(self.identity.board);
         ToHost::Hello {
@@ -185,6 +209,7 @@ impl Desk {
             }
             ToDevice::Arm { tick } => act(&mut |c| c.arm(tick)),
             ToDevice::UploadBegin { bytes, crc } => {
+                self.committed = false;
                 self.upload.begin(bytes, crc).map_err(DeviceError::Upload)?;
                 act(&mut |_| Ok(()))
             }
@@ -192,6 +217,7 @@ impl Desk {
                 self.upload.chunk(offset, &data).map_err(DeviceError::Upload)?;
                 act(&mut |_| Ok(()))
             }
+            ToDevice::UploadCommit if self.committed => act(&mut |_| Ok(())),
             ToDevice::UploadCommit => {
                 let model = self.upload.commit().map_err(DeviceError::Upload)?;
                 let motion = match model.dimension {
@@ -206,6 +232,7 @@ impl Desk {
                 let mut motion = Some(motion);
                 let answer = act(&mut |c| motion.take().map_or(Ok(()), |m| c.set_motion(m)))?;
                 self.dimension = Some(dimension);
+                self.committed = true;
                 Ok(answer)
             }
             ToDevice::Statistics => Ok(Some(ToHost::Statistics(self.statistics(control)))),
@@ -235,7 +262,7 @@ impl Desk {
             frames: self.frames,
             lost: self.lost,
             refused: self.refused,
-            crc_errors: self.damaged,
+            crc_errors: self.damaged.saturating_add(self.gauges.damaged),
             overruns: self.gauges.overruns,
             rejected_states: self.rejected_states,
             stack_used: self.gauges.stack_used,

@@ -7,7 +7,7 @@ use crate::{Control, Desk, Identity};
 /// A whole device without a board: give it frames and ticks, send what it answers.
 #[derive(Debug)]
 pub struct Device {
-    desk: Desk,
+    desk: Desk<()>,
     control: Control,
 }
 
@@ -19,7 +19,7 @@ impl Device {
 
     /// Takes one frame; the frame that answers it, if there is one.
     pub fn receive<'a>(&mut self, frame: &[u8], room: &'a mut [u8; FRAME_MAX]) -> Option<&'a [u8]> {
-        let answer = self.desk.receive(frame, &mut self.control)?;
+        let answer = self.desk.receive((), frame, &mut self.control)?;
         self.desk.frame(&answer, room)
     }
 

@@ -8,7 +8,7 @@ mod device;
 mod space;
 mod upload;
 
-pub use control::{Control, LATE_TICKS, LOST_TICKS};
+pub use control::{Control, LATE_TICKS, LOST_STEPPED_TICKS, LOST_TICKS};
 pub use desk::{Desk, Gauges, Identity, Locked};
 pub use device::Device;
 pub use space::{InSpace, Space};

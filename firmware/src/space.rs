@@ -2,7 +2,7 @@
 
 use pliant_core::{Command, Controller, Motion, Obstacle, RobotState, Settings, TableFull};
 
-use crate::{OBSTACLES, TICK};
+use crate::OBSTACLES;
 
 /// Something that exists in the plane or in space.
 #[derive(Clone, Debug)]
@@ -74,8 +74,8 @@ impl Space {
         age: f32,
     ) -> Result<Result<(), TableFull>, OtherDimension> {
         match (self, obstacle) {
-            (Self::Planar(c), InSpace::Planar(o)) => Ok(c.table_mut().upsert(id, o, age)),
-            (Self::Spatial(c), InSpace::Spatial(o)) => Ok(c.table_mut().upsert(id, o, age)),
+            (Self::Planar(c), InSpace::Planar(o)) => Ok(c.upsert(id, o, age)),
+            (Self::Spatial(c), InSpace::Spatial(o)) => Ok(c.upsert(id, o, age)),
             _ => Err(OtherDimension),
         }
     }
@@ -101,11 +101,19 @@ impl Space {
         }
     }
 
-    /// One tick, with a fresh state or (`fresh` false) ramping down from the last command.
-    pub(crate) fn tick(&mut self, state: &AnyState, fresh: bool) -> Result<Flat, OtherDimension> {
+    /// Time passes without a command.
+    pub(crate) fn wait(&mut self, dt: f32) {
+        match self {
+            Self::Planar(c) => c.wait(dt),
+            Self::Spatial(c) => c.wait(dt),
+        }
+    }
+
+    /// One tick of `dt` seconds, with a fresh state or (`fresh` false) ramping down from the last command.
+    pub(crate) fn tick(&mut self, state: &AnyState, fresh: bool, dt: f32) -> Result<Flat, OtherDimension> {
         match (self, state) {
             (Self::Planar(c), InSpace::Planar(s)) => {
-                let command = if fresh { c.tick(s, TICK) } else { c.tick_late(s, TICK) };
+                let command = if fresh { c.tick(s, dt) } else { c.tick_late(s, dt) };
                 Ok(Command {
                     velocity: command.velocity.push(0.0),
                     gamma: command.gamma,
@@ -114,7 +122,7 @@ impl Space {
                     status: command.status,
                 })
             }
-            (Self::Spatial(c), InSpace::Spatial(s)) => Ok(if fresh { c.tick(s, TICK) } else { c.tick_late(s, TICK) }),
+            (Self::Spatial(c), InSpace::Spatial(s)) => Ok(if fresh { c.tick(s, dt) } else { c.tick_late(s, dt) }),
             _ => Err(OtherDimension),
         }
     }

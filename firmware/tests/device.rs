@@ -1,7 +1,7 @@
 //! The whole device, byte by byte: what it answers, how its modes change, and what it never lets through.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
-use pliant_firmware::{Device, Identity, LATE_TICKS, LOST_TICKS};
+use pliant_firmware::{Device, Identity, LATE_TICKS, LOST_STEPPED_TICKS, LOST_TICKS};
 use pliant_protocol::message::{
     DeviceError, Field, Mode, Obstacle, Settings, Statistics, Steering, StopReason, TickMode, UploadError,
 };
@@ -104,9 +104,9 @@ const HERE: [f32; 3] = [0.3, 0.1, 0.0];
 #[test]
 fn a_stranger_is_told_the_schema_and_nothing_else() {
     let mut host = Host::stranger();
-    assert_eq!(host.refused(ToDevice::Clear), DeviceError::Schema { ours: SCHEMA });
+    assert_eq!(host.refused(ToDevice::Clear), DeviceError::NotGreeted);
     assert!(matches!(host.say(ToDevice::Hello { schema: 1 }), Some(ToHost::Hello { schema: SCHEMA, .. })));
-    assert_eq!(host.refused(ToDevice::Clear), DeviceError::Schema { ours: SCHEMA });
+    assert_eq!(host.refused(ToDevice::Clear), DeviceError::NotGreeted);
     assert!(matches!(host.say(ToDevice::Hello { schema: SCHEMA }), Some(ToHost::Hello { tick_hz: 1000, .. })));
     host.ok(ToDevice::Clear);
     assert!(matches!(host.say(ToDevice::Hello { schema: 1 }), Some(ToHost::Hello { schema: SCHEMA, .. })));
@@ -255,7 +255,10 @@ fn bad_input_is_refused_counted_and_changes_nothing() {
         (ToDevice::State { stamp: 0, position: [f32::NAN, 0.0, 0.0] }, nan(Field::Position)),
         (ToDevice::State { stamp: 0, position: [1001.0, 0.0, 0.0] }, out(Field::Position)),
         (ToDevice::State { stamp: 0, position: [0.0, 0.0, 1.0] }, DeviceError::Dimension),
-        (ToDevice::UploadCommit, DeviceError::Upload(UploadError::NotBegun)),
+        (
+            ToDevice::UploadChunk { offset: 0, data: [1].into_iter().collect() },
+            DeviceError::Upload(UploadError::NotBegun),
+        ),
     ];
     let mut host = Host::armed(TickMode::Stepped);
     host.ok(ToDevice::Upsert { id: 1, stamp: 0, obstacle: good });
@@ -345,6 +348,166 @@ fn damaged_and_foreign_frames_are_counted_and_never_obeyed() {
     let damaged = (frame.len() * 8 + frame.len()) as u32;
     let s = host.statistics();
     assert_eq!((s.crc_errors, s.refused), (damaged, 0));
+}
+
+#[test]
+fn a_late_clock_moves_time_on_and_skips_a_computation() {
+    let mut host = Host::armed(TickMode::Timed);
+    let moving = Obstacle { velocity: [0.1, 0.0, 0.0], axes: [0.05; 3], ..Obstacle::default() };
+    host.ok(ToDevice::Upsert { id: 1, stamp: 0, obstacle: moving });
+    let mut room = [0; FRAME_MAX];
+    let mut tick = |host: &mut Host, overdue| {
+        let answer = host.device.tick(overdue, &mut room).map(|bytes| decode::<ToHost>(bytes).unwrap().message);
+        answer.map(|m| match m {
+            ToHost::Command { tick, gamma, .. } => (tick, gamma),
+            other => panic!("{other:?}"),
+        })
+    };
+    host.state(HERE);
+    let gamma = |seconds: f32| ((HERE[0] - 0.1 * seconds).powi(2) + HERE[1].powi(2)) / 0.0025;
+    let (first, now) = tick(&mut host, 0).unwrap();
+    assert!((now - gamma(0.0)).abs() < 1e-3);
+    assert_eq!(tick(&mut host, 9), None, "late: the links come first");
+    let (next, _) = tick(&mut host, 0).unwrap();
+    assert_eq!(next, first + 11, "ten due ticks were not computed");
+    let (_, now) = tick(&mut host, 0).unwrap();
+    assert!((now - gamma(0.012)).abs() < 1e-3, "{now} {}", gamma(0.012));
+    assert_eq!((host.statistics().missed, host.statistics().ticks), (10, 3));
+    // Twenty milliseconds are twenty milliseconds, however few of them were computed.
+    tick(&mut host, 20);
+    let mut answer = [0; FRAME_MAX];
+    let late = decode::<ToHost>(host.device.tick(0, &mut answer).unwrap()).unwrap().message;
+    assert!(matches!(late, ToHost::Command { mode: Mode::Degraded, .. }), "{late:?}");
+}
+
+#[test]
+fn obstacles_move_while_nobody_knows_where_the_robot_is() {
+    let mut host = Host::armed(TickMode::Timed);
+    let moving = Obstacle { velocity: [0.1, 0.0, 0.0], axes: [0.05; 3], ..Obstacle::default() };
+    host.ok(ToDevice::Upsert { id: 1, stamp: 0, obstacle: moving });
+    for _ in 0..100 {
+        assert_eq!(host.tick(), None);
+    }
+    host.ok(ToDevice::Arm { tick: TickMode::Stepped });
+    let answer = host.state(HERE);
+    let expected = ((HERE[0] - 0.01_f32).powi(2) + HERE[1].powi(2)) / 0.0025;
+    assert!(matches!(answer, Some(ToHost::Command { gamma, .. }) if (gamma - expected).abs() < 1e-3), "{answer:?}");
+}
+
+#[test]
+fn a_commit_sent_again_is_answered_alike() {
+    let mut host = Host::greeted();
+    host.upload(&linear(2));
+    host.ok(ToDevice::UploadCommit);
+    host.ok(ToDevice::UploadBegin { bytes: 10, crc: 0 });
+    assert_eq!(host.refused(ToDevice::UploadCommit), DeviceError::Upload(UploadError::Incomplete));
+}
+
+#[test]
+fn a_stepped_run_that_falls_silent_is_stopped_too() {
+    let mut host = Host::armed(TickMode::Stepped);
+    host.state(HERE);
+    let mut room = [0; FRAME_MAX];
+    for _ in 0..=LOST_STEPPED_TICKS {
+        assert!(host.device.tick(0, &mut room).is_none());
+    }
+    let answer = host.state(HERE);
+    let lost = Mode::Stopped(StopReason::LinkLost);
+    assert!(
+        matches!(answer, Some(ToHost::Command { velocity: [0.0, 0.0, 0.0], mode, .. }) if mode == lost),
+        "{answer:?}"
+    );
+}
+
+/// Two peers at one desk.
+mod peers {
+    use super::*;
+    use pliant_firmware::{Control, Desk};
+
+    struct Table {
+        desk: Desk<u8>,
+        control: Control,
+    }
+
+    impl Table {
+        fn say(&mut self, from: u8, sequence: u16, message: ToDevice) -> Option<ToHost> {
+            let mut room = [0; FRAME_MAX];
+            let frame = encode(sequence, &message, &mut room).unwrap();
+            self.desk.receive(from, frame, &mut self.control)
+        }
+
+        /// A host, 1, that drives.
+        fn driven() -> Self {
+            let desk = Desk::new(Identity { board: "test", firmware: [0, 1, 0] });
+            let mut table = Self { desk, control: Control::new() };
+            let mut room = [0; MODEL_MAX];
+            let model = linear(2);
+            let bytes = model.to_bytes(&mut room).unwrap();
+            let (len, crc, data) = (bytes.len() as u32, checksum(bytes), bytes.iter().copied().collect());
+            let session = [
+                ToDevice::Hello { schema: SCHEMA },
+                ToDevice::UploadBegin { bytes: len, crc },
+                ToDevice::UploadChunk { offset: 0, data },
+                ToDevice::UploadCommit,
+                ToDevice::Arm { tick: TickMode::Timed },
+                ToDevice::State { stamp: 0, position: HERE },
+            ];
+            for (sequence, message) in session.into_iter().enumerate() {
+                let answer = table.say(1, sequence as u16, message);
+                assert!(!matches!(answer, Some(ToHost::Refused { .. })), "{answer:?}");
+            }
+            table
+        }
+
+        fn mode(&mut self) -> Mode {
+            self.control.tick(0);
+            match self.control.take_report() {
+                Some(ToHost::Command { mode, .. }) => mode,
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn a_stranger_can_stop_and_nothing_else() {
+        let mut table = Table::driven();
+        for (sequence, message) in [(9, ToDevice::Clear), (10, ToDevice::Arm { tick: TickMode::Timed })] {
+            let answer = table.say(2, sequence, message);
+            assert!(matches!(answer, Some(ToHost::Refused { error: DeviceError::NotGreeted, .. })), "{answer:?}");
+        }
+        for schema in [SCHEMA, 1] {
+            let answer = table.say(2, 30_000, ToDevice::Hello { schema });
+            assert!(matches!(answer, Some(ToHost::Refused { error: DeviceError::Mode(_), .. })), "{answer:?}");
+        }
+        assert_eq!((table.desk.host(), table.mode()), (Some(1), Mode::Running));
+        assert!(matches!(table.say(2, 20_000, ToDevice::Stop), Some(ToHost::Ack { .. })));
+        assert_eq!(table.mode(), Mode::Stopped(StopReason::Requested));
+        // The host's own numbers still count.
+        assert!(matches!(table.say(1, 6, ToDevice::Arm { tick: TickMode::Timed }), Some(ToHost::Ack { .. })));
+    }
+
+    #[test]
+    fn a_strangers_chatter_does_not_keep_a_lost_link_alive() {
+        let mut table = Table::driven();
+        for sequence in 0..=LOST_TICKS as u16 {
+            table.say(2, sequence, ToDevice::Statistics);
+            table.control.tick(0);
+        }
+        assert_eq!(table.mode(), Mode::Stopped(StopReason::LinkLost));
+        // Now another may come, and has to say hello.
+        assert!(matches!(table.say(2, 999, ToDevice::Hello { schema: SCHEMA }), Some(ToHost::Hello { .. })));
+        assert_eq!(table.desk.host(), Some(2));
+        assert!(matches!(table.say(2, 1000, ToDevice::Clear), Some(ToHost::Ack { .. })));
+    }
+
+    #[test]
+    fn no_command_that_moves_follows_the_answer_to_a_stop() {
+        let mut table = Table::driven();
+        table.control.tick(0);
+        // The tick's command has not been sent yet when the stop comes in.
+        assert!(matches!(table.say(1, 6, ToDevice::Stop), Some(ToHost::Ack { .. })));
+        assert_eq!(table.control.take_report(), None);
+    }
 }
 
 mod any_bytes {

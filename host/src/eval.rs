@@ -142,7 +142,10 @@ fn evaluate_in<S: Scalar, const D: usize>(
 /// The device refuses something, or does not answer.
 pub fn evaluate_on(session: &mut Session, scene: &Scene, points: &Points) -> Result<Vec<Evaluation>, BridgeError> {
     sim::prepare(session, scene)?;
-    let steady = message::Settings { acceleration: None, ..wire::settings(scene) };
+    // As in f64: neither the past nor the age of what is seen counts.
+    let forever = 3600.0;
+    let steady =
+        message::Settings { acceleration: None, time_to_live: forever, hold: forever, ..wire::settings(scene) };
     session.request("the settings", &ToDevice::Configure(steady))?;
     session.request("clear", &ToDevice::Clear)?;
     session.request("arm", &ToDevice::Arm { tick: TickMode::Stepped })?;

@@ -1,10 +1,16 @@
 //! Runs in real time, on every device that needs no hardware, with bounds wide enough for a busy machine.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
+use std::sync::Mutex;
+
 use pliant_tests::programs::{self, root};
 use serde_json::Value;
 
+/// One at a time: on two cores, two runs in real time would measure each other.
+static REAL_TIME: Mutex<()> = Mutex::new(());
+
 fn timed(device: &str) -> Value {
+    let _alone = REAL_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let folder = std::env::temp_dir();
     let scene = root().join("scenes/sbend-foam.toml");
     let arguments = ["run", scene.to_str().unwrap(), "--device", device, "--headless", "--json"];
@@ -30,6 +36,8 @@ fn virtual_device_at_1_khz() {
 #[test]
 fn qemu_over_udp_at_1_khz() {
     let report = timed("qemu");
+    let stack = report["statistics"]["stack_used"].as_u64().unwrap();
+    assert!(stack > 1000 && stack < 65_536, "{stack} bytes of stack");
     assert_eq!(report["board"], "mps2-an386");
     assert!(report["ticks"].as_u64().unwrap() > 1000, "{report}");
 }
@@ -55,6 +63,18 @@ fn stepped_over_the_uart_has_the_bits_of_the_virtual_device() {
     assert_eq!(run("virtual")["runs"], run("qemu-serial")["runs"]);
 }
 
+/// The processes named qemu-system-arm whose parent this is.
+fn emulators_of(parent: u32) -> Vec<u32> {
+    let all = std::fs::read_dir("/proc").unwrap().filter_map(|e| e.ok()?.file_name().to_str()?.parse::<u32>().ok());
+    all.filter(|pid| {
+        // pid (name) state parent ...; the name is cut at 15 bytes
+        let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).unwrap_or_default();
+        let after = stat.rsplit_once(')').map_or("", |(_, after)| after);
+        stat.contains("(qemu-system-ar") && after.split_whitespace().nth(1) == Some(&parent.to_string())
+    })
+    .collect()
+}
+
 #[test]
 fn no_emulator_outlives_its_run() {
     let folder = std::env::temp_dir();
@@ -64,14 +84,9 @@ fn no_emulator_outlives_its_run() {
         .args(["run", scene.to_str().unwrap(), "--device", "qemu", "--headless"])
         .spawn()
         .unwrap();
-    let emulators = |parent: u32| {
-        let found =
-            std::process::Command::new("pgrep").args(["-P", &parent.to_string(), "qemu-system"]).output().unwrap();
-        String::from_utf8(found.stdout).unwrap().lines().map(|l| l.parse::<u32>().unwrap()).collect::<Vec<_>>()
-    };
     let deadline = std::time::Instant::now() + std::time::Duration::from_secs(300);
     let pids = loop {
-        let pids = emulators(child.id());
+        let pids = emulators_of(child.id());
         if !pids.is_empty() {
             break pids;
         }

@@ -92,7 +92,7 @@ fn controller<const D: usize>(scene: &OracleScene) -> Controller<f64, D, 16> {
     };
     let mut controller = Controller::new(motion(&scene.motion), settings);
     for (id, o) in scene.obstacles.iter().enumerate() {
-        controller.table_mut().upsert(id as u16, obstacle(o), 0.0).unwrap();
+        controller.upsert(id as u16, obstacle(o), 0.0).unwrap();
     }
     controller
 }

@@ -61,6 +61,22 @@ pub enum BridgeError {
     /// QEMU, or what it needs, is missing or failed; the sentence says what to do.
     #[error("{0}")]
     Emulator(String),
+    /// The device stopped by itself in the middle of a run.
+    #[error("{device} has {mode}: the run is over")]
+    Stopped {
+        /// The device as the user named it.
+        device: String,
+        /// What it is doing.
+        mode: pliant_protocol::message::Mode,
+    },
+    /// Commands stopped coming in the middle of a run.
+    #[error("{device} fell silent: no command for {seconds} s")]
+    Silent {
+        /// The device as the user named it.
+        device: String,
+        /// How long was waited.
+        seconds: f64,
+    },
     /// The scene does not fit the device.
     #[error("{device} has room for {room} {what}, the scene has {wanted}")]
     Capacity {

@@ -83,10 +83,15 @@ impl Session {
         let arrivals = Sequence::new();
         let mut session = Self { device, link, info, sequence: 0, arrivals, lost: 0, damaged: 0 };
         let deadline = Instant::now() + HELLO;
+        let mut refusal = None;
         while Instant::now() < deadline {
             session.send(&ToDevice::Hello { schema: SCHEMA })?;
             let again = Instant::now() + Duration::from_millis(100);
             while let Some(message) = session.next(again.saturating_duration_since(Instant::now()))? {
+                if let ToHost::Refused { error, .. } = message {
+                    // Another host has it; that may end.
+                    refusal = Some(error);
+                }
                 let ToHost::Hello { schema, firmware, board, tick_hz, obstacles, components } = message else {
                     continue;
                 };
@@ -97,7 +102,10 @@ impl Session {
                 return Ok(session);
             }
         }
-        Err(session.no_answer("hello", HELLO))
+        Err(match refusal {
+            Some(error) => BridgeError::Refused { device: session.device, what: "hello".into(), error },
+            None => session.no_answer("hello", HELLO),
+        })
     }
 
     /// Who the device is.

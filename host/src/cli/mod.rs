@@ -60,7 +60,7 @@ pub fn main() -> ExitCode {
         Err(error) => {
             // clap prints help to stdout and mistakes to stderr, and knows which of them is exit 0 and which 2.
             let _ = error.print();
-            if error.use_stderr() && std::env::args().any(|a| a == "--json") {
+            if error.use_stderr() && std::env::args_os().any(|a| a == "--json") {
                 print_json(&Error::bad_input(error.to_string()).to_json());
             }
             return ExitCode::from(error.exit_code() as u8);

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use serde_json::json;
 
 use super::{Finished, finite, print_json, progress};
-use crate::bridge::Device;
+use crate::bridge::{BridgeError, Device};
 use crate::error::{Error, Outcome};
 use crate::plot;
 use crate::scene::Scene;
@@ -69,6 +69,11 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         let done = (i as f64 + 1.0 - (distance / whole).clamp(0.0, 1.0)) / starts as f64;
         bar.set_position((done * 1000.0) as u64);
         bar.set_message(format!("start {} of {starts}: {time:.1} s, {distance:.3} m to go", i + 1));
+    });
+    let runs = runs.map_err(|error| match error {
+        BridgeError::Capacity { .. } | BridgeError::Refused { .. } => error.into(),
+        // The device was there and failed at what it was asked to run.
+        _ => Error::failed(error.to_string()),
     })?;
     bar.finish_and_clear();
     let board = session.info().board.clone();
@@ -102,6 +107,7 @@ fn as_json(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Option<
                 "reached": r.reached,
                 "ticks": r.ticks,
                 "missed": r.missed,
+                "host_late": r.host_late,
                 "min_gamma": finite(r.min_gamma),
                 "nearest": r.nearest,
                 "time_to_goal_s": r.time_to_goal,
@@ -117,6 +123,7 @@ fn as_json(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Option<
         "reached": runs.reached(),
         "ticks": runs.runs.iter().map(|r| r.ticks).sum::<u64>(),
         "missed": runs.runs.iter().map(|r| r.missed).sum::<u64>(),
+        "host_late": runs.runs.iter().map(|r| r.host_late).sum::<u64>(),
         "min_gamma": finite(runs.min_gamma()),
         "time_to_goal_s": runs.time_to_goal(),
         "rtt_us": runs.rtt_us,

@@ -17,7 +17,7 @@ fn rollouts<const D: usize>(scene: &Scene) -> Vec<Trajectory> {
         for step in 0..(scene.goal().timeout / dt) as usize {
             if step % 33 == 0 {
                 for (id, o) in scene.core_obstacles(step as f64 * dt).unwrap() {
-                    controller.table_mut().upsert(id, o, 0.0).unwrap();
+                    controller.upsert(id, o, 0.0).unwrap();
                 }
             }
             at += controller.tick(&RobotState::new(at).unwrap(), dt).velocity * dt;

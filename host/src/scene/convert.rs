@@ -108,7 +108,7 @@ impl Scene {
     ) -> Result<Controller<S, D, CAP>, ConvertError> {
         let mut controller = Controller::new(self.motion()?, self.settings());
         for (id, obstacle) in self.core_obstacles(t)? {
-            controller.table_mut().upsert(id, obstacle, S::zero()).map_err(|_| ConvertError::TableFull(CAP))?;
+            controller.upsert(id, obstacle, S::zero()).map_err(|_| ConvertError::TableFull(CAP))?;
         }
         Ok(controller)
     }

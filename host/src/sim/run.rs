@@ -1,7 +1,7 @@
 //! A scene from every one of its starts.
 
 use nalgebra::Vector3;
-use pliant_protocol::message::{Region, Statistics};
+use pliant_protocol::message::{Mode, Region, Statistics};
 use pliant_protocol::{ToDevice, checksum};
 
 use super::{Latency, stepped, timed};
@@ -49,8 +49,10 @@ pub struct Run {
     pub reached: bool,
     /// Commands of the device that were used.
     pub ticks: u64,
-    /// Ticks the device was due and did not compute, and milliseconds the host was late by.
+    /// Ticks the device was due and did not compute.
     pub missed: u64,
+    /// Milliseconds in which this host came too late to send a state in time.
+    pub host_late: u64,
     /// Least Gamma at any time, by the scene's true geometry in f64; infinite without obstacles.
     pub min_gamma: f64,
     /// Whose it is.
@@ -105,6 +107,20 @@ pub fn run_scene(
     watch: &mut dyn FnMut(usize, f64, f64),
 ) -> Result<Runs, BridgeError> {
     prepare(session, scene)?;
+    let runs = drive(session, scene, options, watch);
+    if runs.is_err() {
+        // Whatever went wrong, the device is not to go on.
+        let _ = session.send(&ToDevice::Stop);
+    }
+    runs
+}
+
+fn drive(
+    session: &mut Session,
+    scene: &Scene,
+    options: &RunOptions,
+    watch: &mut dyn FnMut(usize, f64, f64),
+) -> Result<Runs, BridgeError> {
     let mut runs = Vec::new();
     let mut clock = 0;
     for (i, start) in scene.starts().iter().enumerate() {
@@ -162,6 +178,7 @@ impl<'a> Log<'a> {
             reached: false,
             ticks: 0,
             missed: 0,
+            host_late: 0,
             min_gamma: f64::INFINITY,
             nearest: None,
             time_to_goal: None,
@@ -177,10 +194,17 @@ impl<'a> Log<'a> {
     }
 
     /// A command came, `rtt` us after its state went.
-    pub(super) fn command(&mut self, command: &Received, rtt: Option<f64>) {
+    ///
+    /// # Errors
+    /// It says that the device has stopped.
+    pub(super) fn command(&mut self, device: &str, command: &Received, rtt: Option<f64>) -> Result<(), BridgeError> {
+        if let Mode::Stopped(_) = command.mode {
+            return Err(BridgeError::Stopped { device: device.into(), mode: command.mode });
+        }
         self.run.ticks += 1;
         self.bits.extend(command.velocity.iter().flat_map(|v| v.to_bits().to_le_bytes()));
         self.run.round_trips.extend(rtt);
+        Ok(())
     }
 
     /// The robot is here; true once it has arrived.
@@ -208,6 +232,10 @@ impl<'a> Log<'a> {
 
     pub(super) fn missed(&mut self, ticks: u64) {
         self.run.missed += ticks;
+    }
+
+    pub(super) fn host_late(&mut self) {
+        self.run.host_late += 1;
     }
 
     fn finish(mut self) -> Run {

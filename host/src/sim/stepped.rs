@@ -38,7 +38,7 @@ pub(super) fn drive(
         }
         let sent = Instant::now();
         let command = session.step(*clock, wire::vector(&robot.position))?;
-        log.command(&command, Some(sent.elapsed().as_secs_f64() * 1e6));
+        log.command(session.device(), &command, Some(sent.elapsed().as_secs_f64() * 1e6))?;
         region = command.region;
         robot.step(&Vector3::from(command.velocity.map(f64::from)), TICK);
         *clock += 1000;

@@ -17,6 +17,10 @@ use crate::scene::Scene;
 const SLOW_TICKS: u64 = 10;
 /// Most messages taken in one tick; a device sends one command a tick and answers what it is sent.
 const EVENTS: usize = 100;
+/// Without a command for this long, the robot stands.
+const QUIET: Duration = Duration::from_millis(100);
+/// Without one for this long, the run is over.
+const GIVE_UP: Duration = Duration::from_secs(3);
 /// States under way whose command has not come; older ones are given up.
 const UNDER_WAY: usize = 256;
 
@@ -42,6 +46,7 @@ pub(super) fn drive(
     let mut region = Region::Free;
     let mut under_way: VecDeque<(u16, Instant)> = VecDeque::new();
     let begin = Instant::now();
+    let mut heard = begin;
     for tick in 0.. {
         let time = tick as f64 * TICK;
         if log.moved(time, robot.position, robot.velocity, region) || time >= patience {
@@ -62,7 +67,16 @@ pub(super) fn drive(
         }
         let end = begin + Duration::from_secs_f64((tick + 1) as f64 * TICK);
         let late = Instant::now().saturating_duration_since(end).as_millis() as u64;
-        log.missed(u64::from(late > 0));
+        if late > 0 {
+            log.host_late();
+        }
+        let silence = heard.elapsed();
+        if silence > QUIET {
+            wanted = Vector3::zeros();
+        }
+        if silence > GIVE_UP {
+            return Err(BridgeError::Silent { device: session.device().into(), seconds: GIVE_UP.as_secs_f64() });
+        }
         // Bounded, so that a host that is late and a device that talks without pause still get to the next tick.
         for _ in 0..EVENTS {
             let left = end.saturating_duration_since(Instant::now());
@@ -74,7 +88,8 @@ pub(super) fn drive(
                         under_way.drain(..=i);
                         sent.elapsed().as_secs_f64() * 1e6
                     });
-                    log.command(&command, rtt);
+                    log.command(session.device(), &command, rtt)?;
+                    heard = Instant::now();
                     wanted = Vector3::from(command.velocity.map(f64::from));
                     region = command.region;
                 }

@@ -28,7 +28,7 @@ fn drive<const D: usize>(message: &ToDevice) {
                 let arm = spec.rotation.column(i) * spec.axes[i];
                 positions.extend([1.0, spec.margin[i], spec.soft_ratio[i], 1.5].map(|s| spec.center + arm * s));
             }
-            controller.table_mut().upsert(*id, obstacle, 0.05).expect("there is room");
+            controller.upsert(*id, obstacle, 0.05).expect("there is room");
         }
         ToDevice::Configure(wire) => {
             let Ok(settings) = settings(wire) else { return };

@@ -44,6 +44,8 @@ pub enum DeviceError {
         /// The first component that fails it; none where the Lyapunov matrix itself is not positive definite.
         component: Option<u8>,
     },
+    /// The device serves another host, or has restarted since it served this one: say hello.
+    NotGreeted,
 }
 
 /// Why a whole frame cannot be read. A damaged one is counted and not answered: its sender is unknown.
@@ -212,6 +214,7 @@ impl Display for DeviceError {
             Self::UnknownObstacle => f.write_str("the device has no obstacle of this number"),
             Self::NoModel => f.write_str("the device has no model to run: upload one"),
             Self::Upload(error) => error.fmt(f),
+            Self::NotGreeted => f.write_str("the device has restarted, or serves another host: say hello first"),
             Self::Certificate { component: None } => {
                 f.write_str("the Lyapunov matrix is not symmetric and positive definite")
             }

@@ -52,7 +52,7 @@ pub const UPLOAD_ERRORS: [UploadError; 6] = [
     UploadError::Incomplete,
     UploadError::Malformed,
 ];
-pub const DEVICE_ERRORS: [DeviceError; 14] = [
+pub const DEVICE_ERRORS: [DeviceError; 15] = [
     DeviceError::Schema { ours: 0x0123_4567_89ab_cdef },
     DeviceError::Frame(FrameFault::Version { ours: 1 }),
     DeviceError::Frame(FrameFault::Message),
@@ -67,6 +67,7 @@ pub const DEVICE_ERRORS: [DeviceError; 14] = [
     DeviceError::Upload(UploadError::Malformed),
     DeviceError::Certificate { component: None },
     DeviceError::Certificate { component: Some(15) },
+    DeviceError::NotGreeted,
 ];
 
 /// No two fields alike, so that a swap shows.

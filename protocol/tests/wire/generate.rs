@@ -108,6 +108,7 @@ fn device_error() -> impl Strategy<Value = DeviceError> {
         field().prop_map(DeviceError::OutOfRange),
         Just(DeviceError::Dimension),
         Just(DeviceError::TableFull),
+        Just(DeviceError::NotGreeted),
         Just(DeviceError::UnknownObstacle),
         Just(DeviceError::NoModel),
         upload_error().prop_map(DeviceError::Upload),

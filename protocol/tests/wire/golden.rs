@@ -100,6 +100,7 @@ fn variants_keep_their_numbers() {
             "0905",
             "0a00",
             "0a010f",
+            "0b",
         ]
     );
 }
@@ -107,5 +108,5 @@ fn variants_keep_their_numbers() {
 #[test]
 fn the_schema_is_the_one_of_this_version() {
     assert_eq!(VERSION, 1);
-    assert_eq!(SCHEMA, 0x93a6_4866_4749_e34e);
+    assert_eq!(SCHEMA, 0xe82b_f46e_7d50_615a);
 }

@@ -1,7 +1,6 @@
 //! Both links, and the half of the application that faces them.
 //!
-//! Requests are answered where they came from. Commands go to the peer that said hello last: that is who the sequence
-//! numbers are counted for, and a stray datagram does not take the commands away from it.
+//! Requests are answered where they came from. Commands go to the desk's host; a stray datagram does not take them away.
 
 use crate::farewell::{self, Route};
 use crate::net::Net;
@@ -21,12 +20,10 @@ enum Peer {
 
 /// The links.
 pub struct Links {
-    desk: Desk,
+    desk: Desk<Peer>,
     /// None where the Ethernet controller did not start.
     net: Option<Net>,
     serial: Serial,
-    /// Who said hello last.
-    host: Option<Peer>,
     /// Frames dropped for want of room to send them, as far as it was logged.
     dropped: u32,
 }
@@ -43,7 +40,7 @@ impl<M: rtic::Mutex<T = Control>> Locked for Lock<M> {
 impl Links {
     /// Links that have heard nothing yet.
     pub fn new(identity: Identity, net: Option<Net>, serial: Serial) -> Self {
-        Self { desk: Desk::new(identity), net, serial, host: None, dropped: 0 }
+        Self { desk: Desk::new(identity), net, serial, dropped: 0 }
     }
 
     /// Answers the Ethernet controller's interrupt. True where it must be called again, after others had their turn.
@@ -75,14 +72,14 @@ impl Links {
     #[must_use]
     pub fn tick(&mut self, command: Option<&ToHost>, gauges: Gauges) -> bool {
         let overruns = self.serial.overruns().saturating_add(self.net.as_ref().map_or(0, Net::overruns));
-        self.desk.gauges = Gauges { overruns, ..gauges };
+        self.desk.gauges = Gauges { overruns, damaged: self.serial.malformed(), ..gauges };
         let dropped = self.serial.dropped().saturating_add(self.net.as_ref().map_or(0, Net::dropped));
         if dropped != self.dropped {
             self.dropped = dropped;
             defmt::warn!("{=u32} frames dropped: the link is too slow for them", dropped);
         }
         // A command that would have to wait for the link is left out: the next one is newer.
-        if let (Some(command), Some(host)) = (command, self.host)
+        if let (Some(command), Some(host)) = (command, self.desk.host())
             && self.idle(host)
         {
             self.send(command, host);
@@ -98,10 +95,7 @@ impl Links {
     }
 
     fn answer(&mut self, frame: &[u8], from: Peer, control: &mut impl Locked) {
-        let Some(answer) = self.desk.receive(frame, control) else { return };
-        if matches!(answer, ToHost::Hello { .. }) {
-            self.host = Some(from);
-        }
+        let Some(answer) = self.desk.receive(from, frame, control) else { return };
         self.send(&answer, from);
     }
 
@@ -116,7 +110,7 @@ impl Links {
             Peer::Udp(to) => self.net.as_mut().and_then(|net| net.send(frame, to)).map(|headers| Route::Udp(*headers)),
         };
         // Only the host that is commanded must learn of a fault.
-        if let (Some(route), true) = (route, self.host == Some(to)) {
+        if let (Some(route), true) = (route, self.desk.host() == Some(to)) {
             farewell::note(route, frame);
         }
     }

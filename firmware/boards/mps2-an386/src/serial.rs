@@ -66,6 +66,11 @@ impl Serial {
         self.overruns.saturating_add(self.collector.overruns())
     }
 
+    /// Frames whose stuffing was damaged on the way.
+    pub fn malformed(&self) -> u32 {
+        self.collector.malformed()
+    }
+
     /// Frames that were never sent because the queue was full.
     pub fn dropped(&self) -> u32 {
         self.dropped

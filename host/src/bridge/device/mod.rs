@@ -42,7 +42,9 @@ pub enum Device {
 }
 
 /// Symbols a second where the user does not say.
-const BAUD: u32 = 1_000_000;
+const BAUD: u32 = 115_200;
+/// Symbols a second below which a serial line cannot carry a state and a command every millisecond (some 80 bytes).
+const FAST: u32 = 1_000_000;
 
 impl FromStr for Device {
     type Err = String;
@@ -109,8 +111,12 @@ impl Device {
         }
     }
 
-    /// Can it keep up 1 kHz of states? In QEMU the UART cannot.
+    /// Is the link too slow for a state every millisecond? In QEMU the UART is.
     pub fn is_slow(&self) -> bool {
-        matches!(self, Self::QemuSerial)
+        match self {
+            Self::QemuSerial => true,
+            Self::Serial { baud, .. } => *baud < FAST,
+            Self::Virtual | Self::Qemu | Self::Udp { .. } => false,
+        }
     }
 }

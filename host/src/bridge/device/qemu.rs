@@ -36,25 +36,27 @@ impl Drop for Process {
 
 /// The machine, with its network port on loopback.
 pub fn start_udp() -> Result<Machine<Udp>, BridgeError> {
+    let parts = Parts::find()?;
     let failed = |error: io::Error| BridgeError::Emulator(format!("no port for QEMU on loopback: {error}"));
     let peer = {
         let free = UdpSocket::bind(("127.0.0.1", 0)).map_err(failed)?;
         free.local_addr().map_err(failed)?
     };
-    let process = start(&["-serial".into(), "null".into(), "-nic".into(), nic(peer)])?;
+    let process = parts.start(&["-serial".into(), "null".into(), "-nic".into(), nic(peer)])?;
     let link = Udp::to(peer).map_err(failed)?;
     Ok(Machine { link, process })
 }
 
 /// The machine, with its first UART on a loopback connection.
 pub fn start_serial() -> Result<Machine<Serial<TcpStream>>, BridgeError> {
+    let parts = Parts::find()?;
     let failed = |error: io::Error| BridgeError::Emulator(format!("cannot connect to QEMU's serial line: {error}"));
     let peer = {
         let free = std::net::TcpListener::bind(("127.0.0.1", 0)).map_err(failed)?;
         free.local_addr().map_err(failed)?
     };
     let line = format!("tcp:127.0.0.1:{},server=on,wait=off,nodelay=on", peer.port());
-    let mut process = start(&["-serial".into(), line, "-nic".into(), "none".into()])?;
+    let mut process = parts.start(&["-serial".into(), line, "-nic".into(), "none".into()])?;
     let deadline = Instant::now() + Duration::from_secs(10);
     let stream = loop {
         match TcpStream::connect(peer) {
@@ -73,20 +75,34 @@ fn nic(peer: SocketAddr) -> String {
     format!("user,model=lan9118,hostfwd=udp:127.0.0.1:{}-:{PORT}", peer.port())
 }
 
-fn start(links: &[String]) -> Result<Process, BridgeError> {
-    let emulator = find_emulator()?;
-    let firmware = firmware()?;
+/// What a machine is made of, found (and built) before a port is chosen: a build takes long, and a free port may not stay so.
+struct Parts {
+    emulator: PathBuf,
+    firmware: PathBuf,
+}
+
+impl Parts {
+    fn find() -> Result<Self, BridgeError> {
+        Ok(Self { emulator: find_emulator()?, firmware: firmware()? })
+    }
+
+    fn start(&self, links: &[String]) -> Result<Process, BridgeError> {
+        start(&self.emulator, &self.firmware, links)
+    }
+}
+
+fn start(emulator: &Path, firmware: &Path, links: &[String]) -> Result<Process, BridgeError> {
     // Should this process be killed outright, the system ends QEMU for us.
     let mut command = match find_program("setpriv") {
         Some(setpriv) => {
             let mut command = Command::new(setpriv);
-            command.args(["--pdeathsig", "KILL"]).arg(&emulator);
+            command.args(["--pdeathsig", "KILL"]).arg(emulator);
             command
         }
-        None => Command::new(&emulator),
+        None => Command::new(emulator),
     };
     command.args(["-machine", "mps2-an386", "-display", "none", "-monitor", "none"]).args(links);
-    command.args(["-semihosting-config", "enable=on,target=native"]).arg("-kernel").arg(&firmware);
+    command.args(["-semihosting-config", "enable=on,target=native"]).arg("-kernel").arg(firmware);
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
     let child = command
         .spawn()
@@ -170,6 +186,8 @@ fn cargo(source: &Path, target: &Path) -> Command {
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(source).args(["build", "--profile", "firmware", "--target", TARGET, "-p", PACKAGE]);
     command.arg("--target-dir").arg(target).stdin(Stdio::null());
+    // Flags of the environment would take the place of the linker script's in .cargo/config.toml.
+    command.env_remove("RUSTFLAGS").env_remove("CARGO_ENCODED_RUSTFLAGS");
     command
 }
 
