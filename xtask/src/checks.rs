@@ -109,7 +109,8 @@ fn tests(workspace: &Workspace) -> Result<Done, Failure> {
     Ok(Done::Tested { tally: tally.finish(), success: status.success() })
 }
 
-/// Where nobody waits for it (`CI` is set), cargo-deny is installed; elsewhere its build would be minutes for a check that seldom fails.
+/// Where nobody waits for it (`CI` is set), cargo-deny is installed; elsewhere its build would be minutes for a check
+/// that seldom fails.
 fn deny_in_ci_or_if_installed(workspace: &Workspace) -> Result<Done, Failure> {
     if std::env::var_os("CI").is_some() {
         return deny::install_and_check(workspace).map(|()| Done::Passed);
