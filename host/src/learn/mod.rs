@@ -77,6 +77,9 @@ pub fn read(paths: &[PathBuf], unit: Option<Unit>) -> Result<Demonstrations, Lea
     let mut items = Vec::new();
     for path in paths {
         let file = path.display().to_string();
+        if !path.exists() {
+            return Err(LearnError::Unreadable { file, source: std::io::ErrorKind::NotFound.into() });
+        }
         if path.is_dir() {
             let unreadable = |source| LearnError::Unreadable { file: file.clone(), source };
             let mut inside = Vec::new();

@@ -36,7 +36,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ("start", "at least one `[[start]]` with its `position = [x, y]`"),
     ("start.position", "as many coordinates as the scene has dimensions, in m, within +-1000, outside every hard core"),
     ("obstacle", "at most 64 `[[obstacle]]` tables, each with `name`, `shape` and `center` (or `path`)"),
-    ("obstacle.name", "a text of its own, not empty"),
+    ("obstacle.name", "a text that no other obstacle has, such as \"post\""),
     ("obstacle.shape", "{ ellipsoid = [a, b] } with the hard semi-axes in m (three in 3-D)"),
     ("obstacle.shape.ellipsoid", "one hard semi-axis for each dimension, from 0.0001 to 1000 (m)"),
     ("obstacle.center", "as many coordinates as the scene has dimensions, in m, within +-1000"),
