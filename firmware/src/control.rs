@@ -107,11 +107,6 @@ impl Control {
         self.report.take()
     }
 
-    /// Something is broken: zero velocity from now on.
-    pub fn fault(&mut self) {
-        self.stop(StopReason::Fault);
-    }
-
     /// What the device is doing.
     pub fn mode(&self) -> Mode {
         self.mode
