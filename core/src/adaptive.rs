@@ -1,6 +1,6 @@
 //! Motion in soft layers: faster through one, slower where two overlap (eqs. 15 and 27 of Chen et al.).
 
-use crate::obstacle::Sample;
+use crate::obstacle::SoftLayer;
 use crate::{Scalar, Vector, norm};
 
 /// Which way the push in a soft layer points.
@@ -38,44 +38,38 @@ const FULL: f64 = 0.02;
 /// Largest slow-down over the speed: an intersection slows the robot and never turns it round.
 const SLOWEST: f64 = 0.8;
 
-/// Is x in this obstacle's soft region?
-pub(crate) fn is_soft<S: Scalar, const D: usize>(o: &Sample<S, D>) -> bool {
-    o.gamma > S::one() && o.gamma_soft <= S::one()
-}
-
-/// The modulated velocity u, adapted to the soft layers x is in; `gain` is the paper's c, m/s.
+/// The modulated velocity u, adapted to the soft layers x is in; `gain` is the paper's c, `nominal` |f(x)|, both in m/s.
 pub(crate) fn adapt<S: Scalar, const D: usize>(
     policy: &SteeringPolicy<S>,
     gain: S,
-    f: &Vector<S, D>,
+    nominal: S,
     u: Vector<S, D>,
-    around: &[Sample<S, D>],
+    soft: &[SoftLayer<S, D>],
 ) -> Vector<S, D> {
+    if soft.is_empty() {
+        return u;
+    }
     match policy {
-        SteeringPolicy::Fixed { cos, sin } => fixed(*cos, *sin, gain, u, around),
-        SteeringPolicy::WithFlow { beta } => with_flow(gain, *beta * norm(f), norm(f), u, around),
+        SteeringPolicy::Fixed { cos, sin } => fixed(*cos, *sin, gain, u, soft),
+        SteeringPolicy::WithFlow { beta } => with_flow(gain, *beta * nominal, nominal, u, soft),
     }
 }
 
-fn soft<S: Scalar, const D: usize>(around: &[Sample<S, D>]) -> impl Iterator<Item = &Sample<S, D>> {
-    around.iter().filter(|o| is_soft(o))
-}
-
-/// Every obstacle soft here but `n`.
+/// Every layer but `n`.
 fn others<'a, S: Scalar, const D: usize>(
-    around: &'a [Sample<S, D>],
-    n: &'a Sample<S, D>,
-) -> impl Iterator<Item = &'a Sample<S, D>> {
-    soft(around).filter(move |m| !core::ptr::eq(*m, n))
+    soft: &'a [SoftLayer<S, D>],
+    n: &'a SoftLayer<S, D>,
+) -> impl Iterator<Item = &'a SoftLayer<S, D>> {
+    soft.iter().filter(move |m| !core::ptr::eq(*m, n))
 }
 
 /// c / Gamma_k^2, m/s
-fn speed_up<S: Scalar, const D: usize>(gain: S, n: &Sample<S, D>) -> S {
+fn speed_up<S: Scalar, const D: usize>(gain: S, n: &SoftLayer<S, D>) -> S {
     amplitude(gain, n.gamma_soft)
 }
 
 /// c (2 / (Gamma_k,n + Gamma_k,m))^2, m/s
-fn slow_down<S: Scalar, const D: usize>(gain: S, n: &Sample<S, D>, m: &Sample<S, D>) -> S {
+fn slow_down<S: Scalar, const D: usize>(gain: S, n: &SoftLayer<S, D>, m: &SoftLayer<S, D>) -> S {
     amplitude(gain, (n.gamma_soft + m.gamma_soft) * S::from_f64(0.5))
 }
 
@@ -90,11 +84,16 @@ fn fixed<S: Scalar, const D: usize>(
     sin: S,
     gain: S,
     mut u: Vector<S, D>,
-    around: &[Sample<S, D>],
+    soft: &[SoftLayer<S, D>],
 ) -> Vector<S, D> {
-    let alone = soft(around).count() == 1;
-    for n in soft(around) {
-        let r = n.arm / norm(&n.arm);
+    let alone = soft.len() == 1;
+    for n in soft {
+        let length = norm(&n.arm);
+        if !(length > S::zero()) {
+            // At the reference point of a wall there is no reference direction.
+            continue;
+        }
+        let r = n.arm / length;
         let mut push = r;
         (push[0], push[1]) = (cos * r[0] - sin * r[1], sin * r[0] + cos * r[1]);
         // sgn(cos(theta_2 - theta_1)), without the angles; rounding must not decide at a right angle
@@ -105,7 +104,7 @@ fn fixed<S: Scalar, const D: usize>(
             u += push * speed_up(gain, n);
         } else {
             let tangential = push - n.normal * push.dot(&n.normal);
-            let sum = others(around, n).fold(S::zero(), |sum, m| sum + slow_down(gain, n, m));
+            let sum = others(soft, n).fold(S::zero(), |sum, m| sum + slow_down(gain, n, m));
             u -= tangential * sum;
         }
     }
@@ -117,18 +116,18 @@ fn with_flow<S: Scalar, const D: usize>(
     largest: S,
     nominal: S,
     u: Vector<S, D>,
-    around: &[Sample<S, D>],
+    soft: &[SoftLayer<S, D>],
 ) -> Vector<S, D> {
     if !(nominal > S::zero()) {
         return u;
     }
     let mut faster = Vector::<S, D>::zeros();
     let mut slower = Vector::<S, D>::zeros();
-    for n in soft(around) {
+    for n in soft {
         let phi = fade(n);
         let mut alone = phi;
         let mut pairs = S::zero();
-        for m in others(around, n) {
+        for m in others(soft, n) {
             alone *= S::one() - fade(m);
             pairs += slow_down(gain, n, m).min(largest) * fade(m);
         }
@@ -143,12 +142,12 @@ fn with_flow<S: Scalar, const D: usize>(
 }
 
 /// 0 at the shell, 1 from a thin band on inwards.
-fn fade<S: Scalar, const D: usize>(o: &Sample<S, D>) -> S {
+fn fade<S: Scalar, const D: usize>(o: &SoftLayer<S, D>) -> S {
     ((S::one() - o.gamma_soft) / S::from_f64(BAND)).min(S::one())
 }
 
 /// The direction of the flow in the tangent plane, shorter than one where there is hardly any.
-fn along_flow<S: Scalar, const D: usize>(u: &Vector<S, D>, nominal: S, o: &Sample<S, D>) -> Vector<S, D> {
+fn along_flow<S: Scalar, const D: usize>(u: &Vector<S, D>, nominal: S, o: &SoftLayer<S, D>) -> Vector<S, D> {
     let t = u - o.normal * u.dot(&o.normal) + side(&o.normal) * (S::from_f64(SIDE) * nominal);
     t / norm(&t).max(S::from_f64(FULL) * nominal)
 }

@@ -1,10 +1,11 @@
 //! The tick: position in, velocity out.
 
-use crate::adaptive::{adapt, is_soft};
-use crate::modulation::modulate;
-use crate::table::Surroundings;
+use crate::adaptive::adapt;
+use crate::ds::Moving;
+use crate::surroundings::Surroundings;
 use crate::{
-    Ageing, Limits, Motion, Obstacle, Region, Scalar, Status, SteeringPolicy, Table, TableFull, Vector, in_range,
+    Ageing, Guard, Limits, Motion, Obstacle, Region, Scalar, Scan, Status, SteeringPolicy, Table, TableFull, Vector,
+    in_range, norm,
 };
 
 /// How obstacles bend the motion, and what the robot may be asked for.
@@ -20,10 +21,12 @@ pub struct Settings<S> {
     pub limits: Limits<S>,
     /// What becomes of obstacles that are not updated.
     pub ageing: Ageing<S>,
+    /// Keeps every sample out of every hard core; `None` leaves it to the modulation, as the papers do.
+    pub guard: Option<Guard<S>>,
 }
 
 impl<S: Scalar> Default for Settings<S> {
-    /// Deformable, c = 0.03 m/s, with the flow at most as fast again, and the defaults of [`Limits`] and [`Ageing`].
+    /// Deformable, c = 0.03 m/s, with the flow at most as fast again, guarded, and the defaults of [`Limits`], [`Ageing`] and [`Guard`].
     fn default() -> Self {
         Self {
             deformable: true,
@@ -31,6 +34,7 @@ impl<S: Scalar> Default for Settings<S> {
             steering: SteeringPolicy::WithFlow { beta: S::one() },
             limits: Limits::default(),
             ageing: Ageing::default(),
+            guard: Some(Guard::default()),
         }
     }
 }
@@ -50,6 +54,8 @@ pub enum SettingsError {
     Deceleration,
     /// Times 0 to 3600 s with hold no less than time to live, growth 0 to 10 m/s.
     Ageing,
+    /// Above 0, at most 1.
+    Guard,
 }
 
 impl<S: Scalar> Settings<S> {
@@ -75,7 +81,8 @@ impl<S: Scalar> Settings<S> {
         check(above_zero(self.limits.speed, 100.0), SettingsError::Speed)?;
         check(self.limits.acceleration.is_none_or(|a| above_zero(a, 1e4)), SettingsError::Acceleration)?;
         check(above_zero(self.limits.deceleration, 1e4), SettingsError::Deceleration)?;
-        check(ageing, SettingsError::Ageing)
+        check(ageing, SettingsError::Ageing)?;
+        check(self.guard.is_none_or(|guard| above_zero(guard.approach, 1.0)), SettingsError::Guard)
     }
 }
 
@@ -133,7 +140,7 @@ pub struct Stages<S: Scalar, const D: usize> {
 /// One motion among at most `CAP` obstacles. See the crate's front page for an example.
 #[derive(Clone, Debug)]
 pub struct Controller<S: Scalar, const D: usize, const CAP: usize> {
-    motion: Motion<S, D>,
+    motion: Moving<S, D>,
     settings: Settings<S>,
     table: Table<S, D, CAP>,
     previous: Vector<S, D>,
@@ -142,35 +149,49 @@ pub struct Controller<S: Scalar, const D: usize, const CAP: usize> {
 impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
     /// A controller at rest, without obstacles. `settings` are taken as they are: [`Settings::check`] those that come from outside.
     pub fn new(motion: Motion<S, D>, settings: Settings<S>) -> Self {
-        Self { motion, settings, table: Table::new(), previous: Vector::zeros() }
+        Self { motion: Moving::new(motion), settings, table: Table::new(), previous: Vector::zeros() }
     }
 
-    /// One step of `dt` seconds: the velocity to drive with from now on, and time passes for the obstacles.
+    /// One step of `dt` seconds: the velocity to drive with from now on, and time passes for obstacles and attractor.
     pub fn tick(&mut self, state: &RobotState<S, D>, dt: S) -> Command<S, D> {
-        let stages = self.evaluate(state);
+        let x = state.position();
+        let guard = self.settings.guard.filter(|_| dt > S::zero());
+        let reach = guard.map(|guard| (guard.reach(x, self.settings.limits.speed, dt), dt));
+        let (relative, nominal) = self.nominal(x);
+        let mut around = Surroundings::new(&nominal);
+        self.table.look(x, self.settings.deformable, reach, &mut around);
+        let stages = self.stages(&relative, nominal, &around);
         let (mut velocity, limited) = self.settings.limits.apply(stages.adapted, &self.previous, dt);
-        let mut status = stages.status | limited | self.table.status(&self.settings.ageing);
+        let mut status = stages.status | limited | self.pass(dt);
         if !velocity.iter().all(|v| v.is_finite()) {
             velocity = Vector::zeros();
             status |= Status::NOT_FINITE;
         }
-        self.pass(velocity, dt);
+        if let Some(guard) = guard {
+            let guarded = guard.apply(x, &velocity, self.settings.limits.speed, dt, &self.table, &around);
+            velocity = guarded.velocity;
+            status.set(Status::GUARDED, guarded.changed);
+            status.set(Status::INFEASIBLE, !guarded.feasible);
+        }
+        self.previous = velocity;
         Command { velocity, gamma: stages.gamma, nearest: stages.nearest, region: stages.region, status }
     }
 
     /// One step without a fresh state: from the last command towards rest, within the deceleration limit. `last` is where the robot was
-    /// last known to be.
+    /// last known to be. Nobody knows where it is now, so there is nothing to guard.
     pub fn tick_late(&mut self, last: &RobotState<S, D>, dt: S) -> Command<S, D> {
-        let around = self.table.surroundings(last.position(), self.settings.deformable);
+        let mut around = Surroundings::new(&Vector::zeros());
+        self.table.look(last.position(), self.settings.deformable, None, &mut around);
         let velocity = self.settings.limits.ramp_down(&self.previous, dt);
-        let status = Status::LATE | self.table.status(&self.settings.ageing);
-        self.pass(velocity, dt);
+        let status = Status::LATE | self.pass(dt);
+        self.previous = velocity;
         Command { velocity, gamma: around.gamma, nearest: around.nearest, region: region(&around), status }
     }
 
-    /// Time passes without a command: obstacles move on and age.
+    /// Time passes without a command: obstacles and attractor move on and age.
     pub fn wait(&mut self, dt: S) {
-        self.pass(Vector::zeros(), dt);
+        self.pass(dt);
+        self.previous = Vector::zeros();
     }
 
     /// Puts an obstacle into the table; see [`Table::upsert`].
@@ -181,23 +202,32 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         self.table.upsert(id, obstacle, age, &self.settings.ageing)
     }
 
+    /// Puts a scan in the place of the one before; see [`Table::set_scan`].
+    pub fn set_scan(&mut self, scan: Scan<S, D>, age: S) {
+        self.table.set_scan(scan, age, &self.settings.ageing);
+    }
+
+    /// Puts the attractor at `position` (m), moving at `velocity` (m/s); false, and nothing changed, if one is out of range.
+    pub fn aim(&mut self, position: &Vector<S, D>, velocity: &Vector<S, D>) -> bool {
+        self.motion.aim(position, velocity)
+    }
+
     /// All stages that depend on the position alone; nothing changes.
     pub fn evaluate(&self, state: &RobotState<S, D>) -> Stages<S, D> {
         let x = state.position();
-        let nominal = self.motion.velocity(x);
-        let around = self.table.surroundings(x, self.settings.deformable);
-        let (modulated, unusable) = modulate(&nominal, &around.samples);
-        let adapted = adapt(&self.settings.steering, self.settings.gain, &nominal, modulated, &around.samples);
-        let status = if unusable { Status::REFERENCE } else { Status::empty() };
-        Stages {
-            nominal,
-            modulated,
-            adapted,
-            gamma: around.gamma,
-            nearest: around.nearest,
-            region: region(&around),
-            status,
-        }
+        let (relative, nominal) = self.nominal(x);
+        let mut around: Surroundings<S, D, CAP> = Surroundings::new(&nominal);
+        self.table.look(x, self.settings.deformable, None, &mut around);
+        self.stages(&relative, nominal, &around)
+    }
+
+    /// The velocity bent round every hard core, m/s, without what soft layers and limits do to it.
+    pub fn modulated(&self, state: &RobotState<S, D>) -> Vector<S, D> {
+        let x = state.position();
+        let (_, nominal) = self.nominal(x);
+        let mut around: Surroundings<S, D, CAP> = Surroundings::new(&nominal);
+        self.table.look(x, false, None, &mut around);
+        around.velocity
     }
 
     /// Forgets the last command: the robot stands still.
@@ -205,9 +235,9 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         self.previous = Vector::zeros();
     }
 
-    /// Changes the motion; obstacles stay.
+    /// Changes the motion, with its attractor at rest where it was learnt; obstacles stay.
     pub fn set_motion(&mut self, motion: Motion<S, D>) {
-        self.motion = motion;
+        self.motion = Moving::new(motion);
     }
 
     /// Changes the settings; [`Settings::check`] those that come from outside.
@@ -215,8 +245,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         self.settings = settings;
     }
 
-    /// The nominal motion.
-    pub fn motion(&self) -> &Motion<S, D> {
+    /// The nominal motion, and where its attractor is.
+    pub fn motion(&self) -> &Moving<S, D> {
         &self.motion
     }
 
@@ -235,9 +265,32 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         &mut self.table
     }
 
-    fn pass(&mut self, velocity: Vector<S, D>, dt: S) {
-        self.previous = velocity;
-        self.table.advance(dt, &self.settings.ageing);
+    /// f(x) relative to the attractor, and as it is, m/s.
+    fn nominal(&self, x: &Vector<S, D>) -> (Vector<S, D>, Vector<S, D>) {
+        let relative = self.motion.relative(x);
+        (relative, relative + self.motion.drift())
+    }
+
+    #[inline]
+    fn stages(&self, relative: &Vector<S, D>, nominal: Vector<S, D>, around: &Surroundings<S, D, CAP>) -> Stages<S, D> {
+        let modulated = around.velocity;
+        // Measured by the motion relative to the attractor, a push leaves a moving attractor alone too.
+        let adapted = adapt(&self.settings.steering, self.settings.gain, norm(relative), modulated, &around.soft);
+        Stages {
+            nominal,
+            modulated,
+            adapted,
+            gamma: around.gamma,
+            nearest: around.nearest,
+            region: region(around),
+            status: if around.unusable { Status::REFERENCE } else { Status::empty() },
+        }
+    }
+
+    /// Time passes; how old obstacles were before, as status flags.
+    fn pass(&mut self, dt: S) -> Status {
+        self.motion.advance(dt);
+        self.table.advance(dt, &self.settings.ageing)
     }
 }
 
@@ -245,7 +298,7 @@ fn region<S: Scalar, const D: usize, const CAP: usize>(around: &Surroundings<S, 
     if around.gamma <= S::one() {
         return Region::Hard;
     }
-    match around.samples.iter().filter(|o| is_soft(o)).count() {
+    match around.soft.len() {
         0 => Region::Free,
         1 => Region::Soft,
         _ => Region::Intersection,

@@ -5,20 +5,29 @@
 pub mod adaptive;
 pub mod controller;
 pub mod ds;
+pub mod guard;
 pub mod limits;
 pub mod modulation;
 pub mod obstacle;
+mod overlap;
+pub mod passive;
 pub mod rotation;
 pub mod scalar;
+pub mod scan;
+pub mod shape;
 pub mod status;
+mod surroundings;
 pub mod table;
 
 pub use adaptive::SteeringPolicy;
 pub use controller::{Command, Controller, RobotState, Settings, SettingsError, Stages};
 pub use ds::{Certified, Component, LpvDs, Motion};
+pub use guard::Guard;
 pub use limits::Limits;
 pub use obstacle::{Obstacle, ObstacleError, ObstacleSpec};
-pub use scalar::Scalar;
+pub use scalar::{Fixed, Scalar};
+pub use scan::{Scan, ScanError};
+pub use shape::Shape;
 pub use status::{Region, Status};
 pub use table::{Ageing, Table, TableFull};
 
@@ -43,5 +52,5 @@ pub(crate) fn is_zero<S: Scalar, const R: usize, const C: usize>(m: &nalgebra::S
 
 /// Euclidean length, by this crate's own square root rather than nalgebra's, so that host and board agree.
 pub(crate) fn norm<S: Scalar, const D: usize>(v: &Vector<S, D>) -> S {
-    v.dot(v).sqrt()
+    S::norm(v.as_slice())
 }

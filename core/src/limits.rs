@@ -49,8 +49,11 @@ impl<S: Scalar> Limits<S> {
 
 /// The vector, at most `length` long, and whether it had to be shortened.
 fn shortened<S: Scalar, const D: usize>(v: Vector<S, D>, length: S) -> (Vector<S, D>, bool) {
-    let own = norm(&v);
-    if own > length { (v * (length / own), true) } else { (v, false) }
+    // Halved, so that the length of the largest vector fits; divided first, so that in fixed point the ratio keeps its digits.
+    let half = S::from_f64(0.5);
+    let halved = v * half;
+    let own = norm(&halved);
+    if own > length * half { (halved / own * length, true) } else { (v, false) }
 }
 
 #[cfg(test)]

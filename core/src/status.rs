@@ -34,5 +34,11 @@ bitflags! {
         const LATE = 1 << 5;
         /// The arithmetic left the range of numbers: the command is zero. No input is known to do this.
         const NOT_FINITE = 1 << 6;
+        /// Hard cores overlap in a ring: they have no reference point in common, and the flow may end between them.
+        const CLUSTER = 1 << 7;
+        /// The guard changed the command, for the next sample would have been in a hard core.
+        const GUARDED = 1 << 8;
+        /// No velocity within the speed limit keeps the next sample out of every hard core: the command violates them the least.
+        const INFEASIBLE = 1 << 9;
     }
 }

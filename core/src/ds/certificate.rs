@@ -40,9 +40,9 @@ pub enum CertificateError {
 impl<S: Scalar, const D: usize> LpvDs<S, D> {
     /// Checks P = P' > 0 and A_k' P + P A_k < 0 for every k, in this model's own precision.
     ///
-    /// Both are decided by L D L' factors with every pivot positive after the diagonal was lowered by a bound on the
-    /// rounding error of the products and of the factors (8 d^2 eps max|terms|, some twice what d <= 3 needs), so "holds"
-    /// means it holds for the exact values of the stored numbers.
+    /// Both are decided by elimination with every pivot positive after the diagonal was lowered by a bound on the rounding error of
+    /// the products and of the elimination (8 d^2 [`Scalar::rounding`] of the largest term, some twice what d <= 3 needs), so "holds" means
+    /// it holds for the exact values of the stored numbers.
     ///
     /// # Errors
     /// Which part fails, with its k.
@@ -109,22 +109,53 @@ fn decreases<S: Scalar, const D: usize>(a: &Matrix<S, D>, p: &Matrix<S, D>, rate
 /// A bound on the spectral norm of all rounding errors, from the sizes of the terms that went in.
 fn rounding<S: Scalar, const D: usize>(terms: &Matrix<S, D>) -> S {
     let largest = terms.iter().fold(S::zero(), |m, x| m.max(x.abs()));
-    S::EPSILON * largest * S::from_f64(8.0 * (D * D) as f64)
+    S::rounding(largest) * S::from_f64(8.0 * (D * D) as f64)
 }
 
-/// Has m - shift I an L D L' with positive pivots? False for anything not-a-number.
+/// Does elimination of m - shift I find positive pivots only? False for anything not-a-number.
+///
+/// The largest diagonal element comes first. Then no factor of a positive definite matrix is larger than one, and errors do not grow: in fixed
+/// point, where they are absolute, as little as in floating point.
 fn positive_definite<S: Scalar, const D: usize>(m: &Matrix<S, D>, shift: S) -> bool {
-    let mut l = Matrix::<S, D>::zeros();
-    let mut pivots = [S::zero(); D];
-    for j in 0..D {
-        let pivot = (0..j).fold(m[(j, j)] - shift, |s, k| s - l[(j, k)] * l[(j, k)] * pivots[k]);
+    let mut m = m - Matrix::<S, D>::identity() * shift;
+    for k in 0..D {
+        let largest = (k..D).fold(k, |best, i| if m[(i, i)] > m[(best, best)] { i } else { best });
+        m.swap_rows(k, largest);
+        m.swap_columns(k, largest);
+        let pivot = m[(k, k)];
         if !(pivot > S::zero() && pivot.is_finite()) {
             return false;
         }
-        pivots[j] = pivot;
-        for i in j + 1..D {
-            l[(i, j)] = (0..j).fold(m[(i, j)], |s, k| s - l[(i, k)] * l[(j, k)] * pivots[k]) / pivot;
+        for i in k + 1..D {
+            let factor = m[(i, k)] / pivot;
+            if !(factor.abs() <= S::one()) {
+                return false;
+            }
+            for j in k + 1..D {
+                let taken = factor * m[(k, j)];
+                m[(i, j)] -= taken;
+            }
         }
     }
     true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn definite_is_what_eigenvalues_say(entries in prop::array::uniform6(-1.0..1.0f64), diagonal in 0.0..2.0f64) {
+            let [a, b, c, d, e, f] = entries;
+            let m = Matrix::<f64, 3>::new(a + diagonal, b, c, b, d + diagonal, e, c, e, f + diagonal);
+            // Sylvester: the leading minors.
+            let two = m[(0, 0)] * m[(1, 1)] - b * b;
+            let minor = |i: usize, j: usize| m[(1, i)] * m[(2, j)] - m[(1, j)] * m[(2, i)];
+            let three = m[(0, 0)] * minor(1, 2) - b * minor(0, 2) + c * minor(0, 1);
+            prop_assume!(two.abs() > 1e-9 && three.abs() > 1e-9);
+            prop_assert_eq!(positive_definite(&m, 0.0), m[(0, 0)] > 0.0 && two > 0.0 && three > 0.0);
+        }
+    }
 }

@@ -105,19 +105,20 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
 
     /// f(x), m/s. Zero at the attractor, finite for x within [`RANGE`](crate::RANGE).
     pub fn velocity(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        let mut exponents = [S::zero(); MAX_COMPONENTS];
-        let mut largest = -S::MAX;
-        for (e, c) in exponents.iter_mut().zip(&self.components) {
-            let y = c.whitening * (x - c.mean);
-            *e = c.log_weight - S::from_f64(0.5) * y.dot(&y);
-            largest = largest.max(*e);
+        // log(pi_k N_k), turned round and 1/32 as large, so that fixed point holds it up to 360 standard deviations away.
+        let mut depths = [S::zero(); MAX_COMPONENTS];
+        let mut least = S::MAX;
+        for (depth, c) in depths.iter_mut().zip(&self.components) {
+            let y = c.whitening * (x - c.mean) * S::from_f64(0.125);
+            *depth = y.dot(&y) - c.log_weight * S::from_f64(1.0 / 32.0);
+            least = least.min(*depth);
         }
         // Log-sum-exp: one exponent is now zero, so the sum is at least one and nothing is 0/0 far from the data.
         let offset = x - self.attractor;
         let mut sum = S::zero();
         let mut velocity = Vector::<S, D>::zeros();
-        for (e, c) in exponents.iter().zip(&self.components) {
-            let gamma = (*e - largest).exp();
+        for (depth, c) in depths.iter().zip(&self.components) {
+            let gamma = ((least - *depth) * S::from_f64(32.0)).exp();
             sum += gamma;
             velocity += c.a * offset * gamma;
         }

@@ -11,9 +11,11 @@
 
 mod certificate;
 mod lpv;
+mod moving;
 
 pub use certificate::{Certificate, CertificateError, Certified};
 pub use lpv::{Component, LpvDs, MAX_COMPONENTS, ModelError, ModelField};
+pub use moving::Moving;
 
 use crate::{Scalar, Vector, in_range};
 

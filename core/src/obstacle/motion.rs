@@ -1,0 +1,132 @@
+//! How an obstacle moves, turns, grows and ages between two sightings.
+
+use super::Obstacle;
+use crate::{Matrix, Scalar, Vector, is_zero, rotation};
+
+impl<S: Scalar, const D: usize> Obstacle<S, D> {
+    /// Carries pose and size on by `dt` seconds.
+    pub(crate) fn advance(&mut self, dt: S) {
+        if !self.moves {
+            return;
+        }
+        self.spec.center += self.spec.velocity * dt;
+        if self.spins {
+            self.spec.rotation = rotation::turned(&self.spec.rotation, &self.spec.spin, dt);
+            self.place_reference();
+        }
+        if self.spec.growth != S::zero() {
+            self.grown += self.spec.growth * dt;
+            self.rescale();
+        }
+    }
+
+    /// Carries pose and size on by a time that may be long: in steps that turn it little, at most 100.
+    pub(crate) fn carry(&mut self, time: S) {
+        let fastest = self.spec.spin.iter().fold(S::zero(), |m, x| m.max(x.abs()));
+        let wanted = fastest * time * S::from_f64(20.0);
+        let mut steps = S::one();
+        while steps < wanted && steps < S::from_f64(100.0) {
+            steps += S::one();
+        }
+        let mut left = steps;
+        while left > S::zero() {
+            self.advance(time / steps);
+            left -= S::one();
+        }
+    }
+
+    /// Makes the core larger by ageing, for `dt` seconds at `rate` m/s. The soft layer stays where it is: margin wins over softness.
+    pub(crate) fn age(&mut self, rate: S, dt: S) {
+        self.aged += rate * dt;
+        if rate != self.ageing {
+            self.ageing = rate;
+            self.set_speeds();
+        }
+        self.inflate();
+    }
+
+    /// Stops all motion: nobody knows any more.
+    pub(crate) fn hold(&mut self) {
+        if !self.moves {
+            return;
+        }
+        self.spec.velocity = Vector::zeros();
+        self.spec.spin = Matrix::zeros();
+        (self.spec.growth, self.ageing) = (S::zero(), S::zero());
+        self.set_speeds();
+    }
+
+    /// Takes a reference point (world's frame, m) in common with others, or its own again.
+    pub(crate) fn share_reference(&mut self, shared: Option<&Vector<S, D>>) {
+        self.local_reference = shared.map_or(self.spec.reference, |x| self.local(x));
+        self.place_reference();
+    }
+
+    pub(super) fn place_reference(&mut self) {
+        self.offset = self.spec.rotation * self.local_reference;
+    }
+
+    /// All that follows from the size.
+    pub(super) fn rescale(&mut self) {
+        let (one, zero) = (S::one(), S::zero());
+        let extent = self.spec.shape.growing_extent();
+        let (_, unit) = self.spec.shape.body();
+        let least = extent.iter().fold(S::MAX, |m, x| m.min(*x));
+        // A shrinking body ends as one with the least semi-extent there may be.
+        let floor = S::MIN_AXIS - least;
+        if self.grown <= floor {
+            self.grown = floor;
+            self.spec.growth = self.spec.growth.max(zero);
+        }
+        let size = extent.map(|a| (a + self.grown) / a);
+        let wall = self.spec.wall;
+        let scale = |ratio: &Vector<S, D>| size.zip_map(ratio, |g, ratio| if wall { g / ratio } else { g * ratio });
+        self.young = unit.component_mul(&scale(&self.spec.margin));
+        self.soft = unit.zip_map(&scale(&self.spec.soft_ratio), |l, g| one / (l * g));
+        // Ageing makes the layer thinner, so what is found without it holds.
+        self.hard = self.young.map(|l| one / l);
+        self.soft_until = self.soft_reach();
+        self.set_speeds();
+        self.inflate();
+    }
+
+    /// The hard core's scale, with what ageing adds to it. Of a wall's free space something is left.
+    fn inflate(&mut self) {
+        let (aged, one) = (self.aged, S::one());
+        let wall = self.spec.wall;
+        self.hard = self.young.zip_map(&self.per_metre, |l, more| {
+            one / if wall { (l - aged * more).max(l * S::from_f64(0.1)) } else { l + aged * more }
+        });
+        self.slimmest = self.hard.iter().fold(S::zero(), |m, x| m.max(*x)) * self.inner;
+    }
+
+    /// How the surface moves, and whether anything does.
+    fn set_speeds(&mut self) {
+        let zero = S::zero();
+        let (grows, wall) = (self.spec.growth, self.spec.wall);
+        // Towards free space the surface moves no faster than this, and away from it no slower.
+        let (most, least) = (self.spec.shape.growing_most(), self.spec.shape.growing_least());
+        let ageing = if wall { -self.ageing } else { self.ageing };
+        // A safety factor is one on the growth as well; of a wall it divides.
+        let eta = self.spec.margin.iter().fold(S::one(), |m, eta| m.max(*eta));
+        let retreats = (grows > zero) == wall;
+        let eta = match (wall, retreats) {
+            (false, false) => eta,
+            (true, true) => S::one() / eta,
+            _ => S::one(),
+        };
+        self.swelling = ageing * most + grows * eta * if retreats { least } else { most };
+        self.spins = !is_zero(&self.spec.spin);
+        self.moves = self.spins || !is_zero(&self.spec.velocity) || grows != zero || self.ageing != zero;
+    }
+
+    /// The Gamma beyond which no point is in the soft layer.
+    fn soft_reach(&self) -> S {
+        let ratio = self.hard.zip_map(&self.soft, |hard, soft| if self.spec.wall { soft / hard } else { hard / soft });
+        let most = ratio.iter().fold(S::zero(), |m, x| m.max(*x));
+        if !(most > S::one()) {
+            return S::zero();
+        }
+        (most * most).powi(self.body.power()) * S::from_f64(1.001)
+    }
+}

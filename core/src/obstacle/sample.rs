@@ -1,0 +1,77 @@
+//! An obstacle as it looks from one point.
+
+use super::Obstacle;
+use crate::{Scalar, Vector, norm};
+
+/// What the modulation wants to know of an obstacle.
+#[derive(Clone, Debug)]
+pub(crate) struct Sample<S: Scalar, const D: usize> {
+    pub gamma: S,
+    /// The shape's normal, of any length that is neither huge nor tiny; zero at the centre. Of a wall it points into the wall, for there it
+    /// is that leads away from the reference point: the modulation does not know one side from the other.
+    pub outward: Vector<S, D>,
+    /// r, from the reference point to x, m.
+    pub arm: Vector<S, D>,
+    /// m/s, growth included.
+    pub surface_velocity: Vector<S, D>,
+}
+
+/// What the adaptive motion wants to know of the soft layer it is in.
+#[derive(Clone, Debug)]
+pub(crate) struct SoftLayer<S: Scalar, const D: usize> {
+    pub gamma_soft: S,
+    /// n, the unit normal.
+    pub normal: Vector<S, D>,
+    /// r, from the reference point to x, m.
+    pub arm: Vector<S, D>,
+    /// The obstacle's first axis in the world's frame.
+    pub first_axis: Vector<S, D>,
+}
+
+impl<S: Scalar, const D: usize> Obstacle<S, D> {
+    /// How it looks from x.
+    #[inline(always)]
+    pub(crate) fn sample(&self, x: &Vector<S, D>) -> Sample<S, D> {
+        let q = self.local(x);
+        let (gamma, direction) = self.body.level(&self.spec.shape, &q.component_mul(&self.hard));
+        let shape_normal = self.spec.rotation * direction.component_mul(&self.hard);
+        let mut surface_velocity = Vector::zeros();
+        if self.moves {
+            surface_velocity = self.surface_velocity(x);
+            if self.swelling != S::zero() {
+                surface_velocity += unit(&shape_normal) * self.swelling;
+            }
+        }
+        let arm = x - self.spec.center - self.offset;
+        Sample { gamma: self.turned_out(gamma), outward: shape_normal, arm, surface_velocity }
+    }
+
+    /// May a point with this Gamma be in the soft layer?
+    #[inline(always)]
+    pub(crate) fn may_be_soft(&self, gamma: S) -> bool {
+        // The usual answer first.
+        gamma <= self.soft_until && gamma > S::one()
+    }
+
+    /// The soft layer at x, if x is in it and not in the core, from what was sampled there.
+    #[inline(never)]
+    pub(crate) fn soft_layer(
+        &self,
+        x: &Vector<S, D>,
+        outward: Vector<S, D>,
+        arm: Vector<S, D>,
+    ) -> Option<SoftLayer<S, D>> {
+        let gamma_soft = self.gamma_soft(x);
+        (gamma_soft <= S::one()).then(|| SoftLayer {
+            gamma_soft,
+            normal: unit(&outward),
+            arm,
+            first_axis: self.spec.rotation.column(0).into_owned(),
+        })
+    }
+}
+
+fn unit<S: Scalar, const D: usize>(v: &Vector<S, D>) -> Vector<S, D> {
+    let length = norm(v);
+    if length > S::zero() { v / length } else { Vector::zeros() }
+}

@@ -1,0 +1,106 @@
+//! What an obstacle is made from.
+
+use crate::shape::Shape;
+use crate::{Matrix, Scalar, Vector, in_range, rotation};
+
+/// Largest linear (m/s) and angular (rad/s) speed of an obstacle.
+pub const MAX_SPEED: f64 = 100.0;
+/// Smallest semi-axis in floating point, m; see [`Scalar::MIN_AXIS`].
+pub const MIN_AXIS: f64 = 1e-4;
+/// Largest soft ratio and largest safety factor.
+pub const MAX_RATIO: f64 = 100.0;
+
+/// What an obstacle is made from; [`Obstacle::new`](crate::Obstacle::new) checks it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObstacleSpec<S: Scalar, const D: usize> {
+    /// c, m.
+    pub center: Vector<S, D>,
+    /// Q, from the obstacle's frame to the world's.
+    pub rotation: Matrix<S, D>,
+    /// The hard core.
+    pub shape: Shape<S, D>,
+    /// Turned inside out: the shape is the free space, what is around it a wall.
+    pub wall: bool,
+    /// rho >= 1 along each axis of the frame: the soft layer's surface is the core's, this much larger (of a wall, smaller); 1 is rigid.
+    /// For one stiffness k: ln k + 1.
+    pub soft_ratio: Vector<S, D>,
+    /// eta >= 1, the safety factor along each axis.
+    pub margin: Vector<S, D>,
+    /// The reference point in the obstacle's frame, m; inside the hard core (of a wall, inside the free space).
+    pub reference: Vector<S, D>,
+    /// Of the centre, m/s.
+    pub velocity: Vector<S, D>,
+    /// Angular velocity as a skew matrix, rad/s; see [`rotation::planar_spin`] and [`rotation::spatial_spin`].
+    pub spin: Matrix<S, D>,
+    /// How fast each semi-extent becomes longer (below zero: shorter), m/s. The soft layer grows with the core.
+    pub growth: S,
+}
+
+impl<S: Scalar, const D: usize> Default for ObstacleSpec<S, D> {
+    /// A rigid ball of 5 cm radius at the origin, at rest.
+    fn default() -> Self {
+        let ones = Vector::<S, D>::from_element(S::one());
+        Self {
+            center: Vector::zeros(),
+            rotation: Matrix::identity(),
+            shape: Shape::ellipsoid(ones * S::from_f64(0.05)),
+            wall: false,
+            soft_ratio: ones,
+            margin: ones,
+            reference: Vector::zeros(),
+            velocity: Vector::zeros(),
+            spin: Matrix::zeros(),
+            growth: S::zero(),
+        }
+    }
+}
+
+/// The field for which a specification is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ObstacleError {
+    /// Not finite, or beyond +-1000 m.
+    Center,
+    /// Not a rotation (orthonormal to 1e-3, right-handed).
+    Rotation,
+    /// A shape of the other dimension: polygons are for the plane, cylinders and capsules for space.
+    Dimension,
+    /// A semi-axis, half side, radius or length is not between [`Scalar::MIN_AXIS`] and 1000 m.
+    Axes,
+    /// p is not between 1 and [`MAX_CURVATURE`](crate::shape::MAX_CURVATURE).
+    Curvature,
+    /// The radius of edges is below [`Scalar::MIN_AXIS`] or larger than the body has room for.
+    Rounding,
+    /// Not a polygon once round its origin, counter-clockwise and seen whole from there.
+    Vertices,
+    /// Not between 1 and 100, or not the same along both axes of a polygon.
+    SoftRatio,
+    /// Not between 1 and 100, or not the same along both axes of a polygon.
+    Margin,
+    /// Not inside the hard core, or from there the polygon is not seen whole.
+    Reference,
+    /// Not finite, or beyond [`MAX_SPEED`].
+    Velocity,
+    /// Not skew, not finite, or beyond [`MAX_SPEED`].
+    Spin,
+    /// Not finite, or beyond [`MAX_SPEED`].
+    Growth,
+}
+
+impl<S: Scalar, const D: usize> ObstacleSpec<S, D> {
+    /// Checks every field but the reference point, which needs the body.
+    pub(super) fn check(&self) -> Result<(), ObstacleError> {
+        let check = |ok: bool, error: ObstacleError| if ok { Ok(()) } else { Err(error) };
+        let ratio = |v: &Vector<S, D>| v.iter().all(|x| *x >= S::one() && *x <= S::from_f64(MAX_RATIO));
+        let max_speed = S::from_f64(MAX_SPEED);
+        check(in_range(&self.center), ObstacleError::Center)?;
+        check(rotation::is_rotation(&self.rotation), ObstacleError::Rotation)?;
+        self.shape.check()?;
+        // A factor an axis would uncover parts of a polygon.
+        let one = |v: &Vector<S, D>| !matches!(self.shape, Shape::Polygon(_)) || v.iter().all(|x| *x == v[0]);
+        check(ratio(&self.soft_ratio) && one(&self.soft_ratio), ObstacleError::SoftRatio)?;
+        check(ratio(&self.margin) && one(&self.margin), ObstacleError::Margin)?;
+        check(self.velocity.iter().all(|v| v.abs() <= max_speed), ObstacleError::Velocity)?;
+        check(rotation::is_spin(&self.spin, max_speed), ObstacleError::Spin)?;
+        check(self.growth.abs() <= max_speed, ObstacleError::Growth)
+    }
+}

@@ -1,0 +1,77 @@
+use super::*;
+use crate::shape::{Polygon, Shape};
+use crate::{Matrix, rotation};
+use proptest::prelude::*;
+
+fn spec() -> ObstacleSpec<f64, 2> {
+    ObstacleSpec {
+        center: Vector::<f64, 2>::new(0.3, -0.2),
+        rotation: rotation::planar(0.4),
+        shape: Shape::Ellipsoid { axes: Vector::<f64, 2>::new(0.08, 0.04), curvature: 2 },
+        soft_ratio: Vector::<f64, 2>::new(1.5, 1.5),
+        margin: Vector::<f64, 2>::new(1.1, 1.3),
+        ..ObstacleSpec::default()
+    }
+}
+
+fn ellipse(a: f64, b: f64, curvature: u8) -> Shape<f64, 2> {
+    Shape::Ellipsoid { axes: Vector::<f64, 2>::new(a, b), curvature }
+}
+
+fn polygon(vertices: &[[f64; 2]]) -> Shape<f64, 2> {
+    Shape::Polygon(Polygon::new(vertices).unwrap())
+}
+
+fn shaped(shape: Shape<f64, 2>) -> ObstacleSpec<f64, 2> {
+    ObstacleSpec { shape, ..spec() }
+}
+
+#[test]
+fn each_bad_field_is_named() {
+    let cases = [
+        (ObstacleSpec { center: Vector::<f64, 2>::new(f64::NAN, 0.0), ..spec() }, ObstacleError::Center),
+        (ObstacleSpec { center: Vector::<f64, 2>::new(1001.0, 0.0), ..spec() }, ObstacleError::Center),
+        (ObstacleSpec { rotation: Matrix::zeros(), ..spec() }, ObstacleError::Rotation),
+        (ObstacleSpec { rotation: Matrix::<f64, 2>::new(1.0, 0.0, 0.0, -1.0), ..spec() }, ObstacleError::Rotation),
+        (shaped(ellipse(0.1, 0.0, 1)), ObstacleError::Axes),
+        (shaped(ellipse(-0.1, 0.1, 1)), ObstacleError::Axes),
+        (shaped(ellipse(0.1, 0.1, 0)), ObstacleError::Curvature),
+        (shaped(ellipse(0.1, 0.1, 9)), ObstacleError::Curvature),
+        (shaped(Shape::Box { half: Vector::<f64, 2>::new(0.1, 0.05), rounding: 0.06 }), ObstacleError::Rounding),
+        (shaped(Shape::Box { half: Vector::<f64, 2>::new(0.1, 0.05), rounding: 0.0 }), ObstacleError::Rounding),
+        (shaped(Shape::Capsule { radius: 0.1, half_length: 0.1 }), ObstacleError::Dimension),
+        (shaped(polygon(&[[0.1, 0.0], [-0.1, -0.1], [-0.1, 0.1]])), ObstacleError::Vertices),
+        (shaped(polygon(&[[0.1, 0.1], [0.2, 0.1], [0.2, 0.2]])), ObstacleError::Vertices),
+        (ObstacleSpec { growth: f64::NAN, ..spec() }, ObstacleError::Growth),
+        (ObstacleSpec { soft_ratio: Vector::<f64, 2>::new(1.0, 0.9), ..spec() }, ObstacleError::SoftRatio),
+        (ObstacleSpec { margin: Vector::<f64, 2>::new(0.9, 1.0), ..spec() }, ObstacleError::Margin),
+        (ObstacleSpec { reference: Vector::<f64, 2>::new(0.0, 0.05), ..spec() }, ObstacleError::Reference),
+        (ObstacleSpec { velocity: Vector::<f64, 2>::new(f64::INFINITY, 0.0), ..spec() }, ObstacleError::Velocity),
+        (ObstacleSpec { spin: Matrix::identity(), ..spec() }, ObstacleError::Spin),
+    ];
+    for (bad, error) in cases {
+        assert_eq!(Obstacle::new(bad), Err(error));
+    }
+}
+
+proptest! {
+    #[test]
+    fn gradient_is_the_slope_of_gamma(x in -0.3..0.9f64, y in -0.7..0.4f64, p in 1..4u8) {
+        let o = Obstacle::new(shaped(ellipse(0.08, 0.04, p))).unwrap();
+        let at = Vector::<f64, 2>::new(x, y);
+        let gradient = o.gradient(&at);
+        for i in 0..2 {
+            let mut step = Vector::<f64, 2>::zeros();
+            step[i] = 1e-7;
+            let slope = (o.gamma(&(at + step)) - o.gamma(&(at - step))) / 2e-7;
+            prop_assert!((slope - gradient[i]).abs() <= 1e-5 * (1.0 + gradient.norm()));
+        }
+    }
+
+    #[test]
+    fn the_inflated_surface_has_gamma_one(angle in 0.0..6.3f64) {
+        let o = Obstacle::new(shaped(ellipse(0.08, 0.04, 1))).unwrap();
+        let q = Vector::<f64, 2>::new(0.08 * 1.1 * angle.cos(), 0.04 * 1.3 * angle.sin());
+        prop_assert!((o.gamma(&(o.spec().center + o.spec().rotation * q)) - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,108 @@
+//! Angles by polynomials, from one reduction and plain arithmetic only.
+//!
+//! The coefficients minimise the largest error (Remez), relative to the function for the sine and the arc tangent.
+
+use super::Scalar;
+
+/// A number as an unevaluated sum of a leading part and a correction: constants that have more digits than the type.
+type Pair<S> = (S, S);
+
+/// sum_i c_i u^i
+#[inline(always)]
+fn polynomial<S: Scalar, const N: usize>(c: &[S; N], u: S) -> S {
+    c.iter().rev().copied().reduce(|sum, c| sum * u + c).unwrap_or_else(S::zero)
+}
+
+/// What the angle of a point needs.
+pub(super) struct ArcTangent<S, const N: usize> {
+    /// tan(pi/8)
+    pub bound: S,
+    /// pi/4, pi/2, 3 pi/4 and pi to the nearest number.
+    pub eighth: S,
+    pub quarter: S,
+    pub three_eighths: S,
+    pub half: S,
+    /// What they lack, for each radian; zero where that is no digit.
+    pub lacking: S,
+    /// atan(t) = t + t u (c_0 + c_1 u + ...), u = t^2, |t| <= tan(pi/8)
+    pub series: [S; N],
+}
+
+impl<S: Scalar, const N: usize> ArcTangent<S, N> {
+    /// The angle of (x, y) with one division: t = min/max of |x| and |y|, or (t - 1)/(t + 1) where t > tan(pi/8), which is short
+    /// by pi/4; mirrored at the diagonal and at both axes.
+    #[inline(always)]
+    pub fn angle(&self, y: S, x: S) -> S {
+        self.polar(y, x, |_| S::one()).1
+    }
+
+    /// The length and angle of (x, y); `root` is sqrt(1 + u) for u up to tan(pi/8)^2.
+    #[inline(always)]
+    pub fn polar(&self, y: S, x: S, root: impl Fn(S) -> S) -> (S, S) {
+        let (zero, half) = (S::zero(), S::from_f64(0.5));
+        let (across, along) = (y.abs(), x.abs());
+        let upright = across > along;
+        let small = if upright { along } else { across };
+        let large = if upright { across } else { along };
+        let steep = small > self.bound * large;
+        // Halved, so that the sum of the largest numbers stays in range.
+        let over = if steep { small * half - large * half } else { small };
+        let under = if steep { small * half + large * half } else { large };
+        // At the origin 0/1.
+        let t = over / if under == zero { S::one() } else { under };
+        let u = t * t;
+        let rest = t + t * (u * polynomial(&self.series, u));
+        // Only selections from here on: in a loop over many points, compilers compute several at once.
+        let back = x < zero;
+        let rest = if upright { -rest } else { rest };
+        let rest = if back { -rest } else { rest };
+        let leading = if back { self.half } else { zero };
+        let leading = if upright { self.quarter } else { leading };
+        let odd = if back { self.three_eighths } else { self.eighth };
+        let leading = if steep { odd } else { leading };
+        // Odd eighths lack less than would show.
+        let rest = if steep || self.lacking == zero { rest } else { rest + leading * self.lacking };
+        let angle = leading + rest;
+        // Halves of sum and difference are the point turned by pi/4 and sqrt(2) times as near.
+        let length = under * root(u) * if steep { S::from_f64(core::f64::consts::SQRT_2) } else { S::one() };
+        (length, if y < zero { -angle } else { angle })
+    }
+}
+
+/// What sine and cosine need.
+pub(super) struct SineCosine<S, const N: usize> {
+    /// pi/4
+    pub eighth: S,
+    /// pi/2 and pi to the nearest number, and what these lack.
+    pub quarter: Pair<S>,
+    pub half: Pair<S>,
+    /// sin(r) = r + r u (c_0 + c_1 u + ...), u = r^2, |r| <= pi/4
+    pub sine: [S; N],
+    /// cos(r) = 1 - u/2 + u^2 (c_0 + c_1 u + ...)
+    pub cosine: [S; N],
+}
+
+impl<S: Scalar, const N: usize> SineCosine<S, N> {
+    /// (sin x, cos x), or `None` beyond |x| = pi (and a little more), where this reduction would lose digits.
+    #[inline]
+    pub fn at(&self, x: S) -> Option<(S, S)> {
+        let a = x.abs();
+        if !(a <= self.half.0 + self.eighth) {
+            return None;
+        }
+        let near = a <= self.eighth;
+        let sideways = a <= self.quarter.0 + self.eighth;
+        let base = if sideways { self.quarter } else { self.half };
+        // The first difference is exact, for a is within a factor of two of what is taken off.
+        let r = if near { a } else { (a - base.0) - base.1 };
+        let u = r * r;
+        let sin = r + r * (u * polynomial(&self.sine, u));
+        let cos = S::one() - (u * S::from_f64(0.5) - u * (u * polynomial(&self.cosine, u)));
+        let (sin, cos) = match (near, sideways) {
+            (true, _) => (sin, cos),
+            (_, true) => (cos, -sin),
+            _ => (-sin, -cos),
+        };
+        Some((if x < S::zero() { -sin } else { sin }, cos))
+    }
+}

@@ -1,0 +1,223 @@
+//! What fixed point is made of: products, quotients and roots of whole numbers, in few instructions on a processor that neither
+//! multiplies 32 by 32 bits into 64 nor divides.
+
+/// Is a long product one instruction? Armv6-M has none, and of the Arm processors it is the one without atomic exchange, which a
+/// program can ask the compiler about. Both ways give the same number.
+const LONG_MULTIPLY: bool = cfg!(any(not(target_arch = "arm"), target_has_atomic = "32"));
+
+/// a b
+#[inline]
+pub(super) fn product(a: i32, b: i32) -> i64 {
+    if LONG_MULTIPLY { i64::from(a) * i64::from(b) } else { by_halves(a, b) }
+}
+
+/// The upper half of a b, rounded down.
+#[inline]
+pub(super) fn high(a: i32, b: i32) -> i32 {
+    (product(a, b) >> 32) as i32
+}
+
+/// a b, without signs.
+#[inline]
+fn unsigned_product(a: u32, b: u32) -> u64 {
+    if LONG_MULTIPLY { u64::from(a) * u64::from(b) } else { unsigned_by_halves(a, b) }
+}
+
+/// a b from four products of 16 bits; no sum in it leaves 32 bits.
+#[inline]
+fn by_halves(a: i32, b: i32) -> i64 {
+    let (upper, lower) = (|x: i32| x >> 16, |x: i32| x & 0xffff);
+    let low = (lower(a) as u32).wrapping_mul(lower(b) as u32);
+    let first = upper(a).wrapping_mul(lower(b)).wrapping_add((low >> 16) as i32);
+    let second = lower(a).wrapping_mul(upper(b)).wrapping_add(lower(first));
+    let high = upper(a).wrapping_mul(upper(b)).wrapping_add(upper(first)).wrapping_add(upper(second));
+    (i64::from(high) << 32) | i64::from(((second as u32) << 16) | (low & 0xffff))
+}
+
+/// The same, without signs.
+#[inline]
+fn unsigned_by_halves(a: u32, b: u32) -> u64 {
+    let (upper, lower) = (|x: u32| x >> 16, |x: u32| x & 0xffff);
+    let low = lower(a).wrapping_mul(lower(b));
+    let first = upper(a).wrapping_mul(lower(b)).wrapping_add(upper(low));
+    let second = lower(a).wrapping_mul(upper(b)).wrapping_add(lower(first));
+    let high = upper(a).wrapping_mul(upper(b)).wrapping_add(upper(first)).wrapping_add(upper(second));
+    (u64::from(high) << 32) | u64::from((second << 16) | lower(low))
+}
+
+/// p / 2^BITS rounded down, or the end of the range.
+#[inline]
+pub(super) fn narrowed<const BITS: u32>(p: i64) -> i32 {
+    // Fits if the bits above the result's sign are all like it: one comparison of the upper word.
+    let (upper, room) = ((p >> 32) as i32, 1_u32 << (BITS - 1));
+    if (upper as u32).wrapping_add(room) < room << 1 {
+        (p >> BITS) as i32
+    } else if upper < 0 {
+        i32::MIN
+    } else {
+        i32::MAX
+    }
+}
+
+/// n 2^BITS / d to the nearest, ties upwards; 2^31 where it is more or d = 0. Both n and d are at most 2^31.
+///
+/// A reciprocal good to 27 digits gives the quotient within 11, and within one where it is below 2^27; what it leaves says which
+/// whole number is the nearest.
+pub(super) fn quotient<const BITS: u32>(n: u32, d: u32) -> u32 {
+    if n >> (31 - BITS) >= d {
+        return 1 << 31;
+    }
+    let zeros = d.leading_zeros();
+    let reciprocal = reciprocal(d << (zeros & 31));
+    let mut quotient = shifted(unsigned_product(n, reciprocal), 62 - BITS - zeros);
+    let mut rest = (u64::from(n) << BITS).wrapping_sub(unsigned_product(quotient, d)) as i64;
+    let d = i64::from(d);
+    while rest + rest >= d {
+        rest -= d;
+        quotient += 1;
+    }
+    while rest + rest < -d {
+        rest += d;
+        quotient -= 1;
+    }
+    quotient
+}
+
+/// p / 2^by, rounded down, for a result that fits; by from 1 to 63. Half of p at a time, for a shift of 64 bits would be a call.
+#[inline]
+fn shifted(p: u64, by: u32) -> u32 {
+    let (upper, lower) = ((p >> 32) as u32, p as u32);
+    if by >= 32 { upper >> (by & 31) } else { (upper << ((32 - by) & 31)) | (lower >> (by & 31)) }
+}
+
+/// 2^62 / d for d from 2^31 on, to 27 digits: Newton's r (2 - d r), which doubles the digits.
+#[inline]
+fn reciprocal(d: u32) -> u32 {
+    // D = d/2^31 from 1 to 2; r in 2^-16 is 1/D, at first by the best line, 24/17 - 8/17 D, to 4 digits.
+    let x = d >> 16;
+    let mut r = 92_521 - ((x * 61_681) >> 16);
+    for _ in 0..2 {
+        r = (r * ((1 << 16) - ((x * r) >> 16))) >> 15;
+    }
+    // The last step with all digits of d: what 1 - D r is, in 2^-31.
+    let missing = (1_u32 << 31).wrapping_sub(x * r + (((d & 0xffff) * r) >> 16)) as i32;
+    (r << 15).wrapping_add_signed((r as i32 * (missing >> 2)) >> 14)
+}
+
+/// The square root to the nearest, at most 2^31 - 1.
+///
+/// As with [`quotient`]: the estimate is good to 26 digits, and what it leaves says which whole number is the nearest.
+pub(super) fn root(square: u64) -> u32 {
+    if square >= 1 << 62 {
+        return i32::MAX as u32;
+    }
+    if square == 0 {
+        return 0;
+    }
+    // The first 32 digits, beginning at an even place.
+    let (upper, lower) = ((square >> 32) as u32, square as u32);
+    let (leading, shift) = if upper == 0 {
+        let shift = lower.leading_zeros() & 30;
+        (lower << shift, 32 + shift)
+    } else {
+        let shift = upper.leading_zeros() & 30;
+        ((upper << shift) | ((lower >> 1) >> (31 - shift)), shift)
+    };
+    let mut root = normal_root(leading) >> (shift >> 1);
+    let mut rest = square.wrapping_sub(unsigned_product(root, root)) as i64;
+    // (root - 1/2)^2 < square < (root + 1/2)^2
+    while rest > i64::from(root) {
+        rest -= i64::from(root) + i64::from(root) + 1;
+        root += 1;
+    }
+    while rest <= -i64::from(root) {
+        root -= 1;
+        rest += i64::from(root) + i64::from(root) + 1;
+    }
+    root.min(i32::MAX as u32)
+}
+
+/// sqrt(2^32 h) for h from 2^30 on, to 26 digits: h times Newton's reciprocal root y (3 - h y^2)/2, and its remainder.
+#[inline]
+fn normal_root(h: u32) -> u32 {
+    // y in 2^-15 is the reciprocal root of h/2^32, at first by the best parabola, to 2.4 %.
+    let x = h >> 16;
+    let mut y = 87_518 - ((x * (107_655 - ((x * 53_693) >> 16))) >> 16);
+    for _ in 0..2 {
+        let square = ((y >> 1) * (y >> 1)) >> 13;
+        y = (y * (((3 << 15) - ((x * square) >> 16)) >> 1)) >> 15;
+    }
+    let r = (x * y) >> 15;
+    let rest = h.wrapping_sub(r * r) as i32;
+    (r << 16).saturating_add_signed(((rest >> 4) * y as i32) >> 12)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every pattern of long runs of ones and zeros: where carries and signs go wrong.
+    fn telling() -> impl Iterator<Item = i32> + Clone {
+        (0..32).flat_map(|n| [1_i64 << n, (1 << n) - 1, (1 << n) + 1, -1 << n].map(|x| x as i32))
+    }
+
+    #[test]
+    fn both_ways_to_multiply_agree() {
+        for a in telling() {
+            for b in telling() {
+                assert_eq!(by_halves(a, b), i64::from(a) * i64::from(b), "{a} {b}");
+                let (c, d) = (a as u32, b as u32);
+                assert_eq!(unsigned_by_halves(c, d), u64::from(c) * u64::from(d), "{c} {d}");
+            }
+        }
+        let mut x = 1_u64;
+        for _ in 0..1_000_000 {
+            x = x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let (a, b) = ((x >> 32) as i32, (x.swap_bytes() >> 32) as i32);
+            assert_eq!(by_halves(a, b), i64::from(a) * i64::from(b), "{a} {b}");
+            let (c, d) = (a as u32, b as u32);
+            assert_eq!(unsigned_by_halves(c, d), u64::from(c) * u64::from(d), "{c} {d}");
+        }
+    }
+
+    #[test]
+    fn estimates_are_as_good_as_said() {
+        for n in (1_u32 << 31..=u32::MAX).step_by(1009).chain([u32::MAX, u32::MAX - 1]) {
+            let exact = libm::exp2(62.0) / f64::from(n);
+            assert!((f64::from(reciprocal(n)) / exact - 1.0).abs() < libm::exp2(-27.5), "{n}");
+        }
+        for n in (1_u32 << 30..=u32::MAX).step_by(2003).chain([u32::MAX, u32::MAX - 1]) {
+            let exact = libm::sqrt(f64::from(n) * libm::exp2(32.0));
+            assert!((f64::from(normal_root(n)) / exact - 1.0).abs() < libm::exp2(-26.0), "{n}");
+        }
+    }
+
+    #[test]
+    fn a_root_is_the_nearest_one_that_fits() {
+        let check = |square: u64| {
+            let exact = u128::from(square);
+            let r = u128::from(root(square));
+            if square >= (1 << 62) - (1 << 31) {
+                assert_eq!(r, (1 << 31) - 1);
+            } else {
+                // (r - 1/2)^2 < square < (r + 1/2)^2, in quarters
+                assert!(4 * exact < (2 * r + 1).pow(2), "{square}: {r}");
+                assert!(r == 0 || 4 * exact > (2 * r - 1).pow(2), "{square}: {r}");
+            }
+        };
+        for n in 0..31 {
+            for r in [(1_u64 << n) - 1, 1 << n, (1 << n) + 1, 3 << n >> 1] {
+                for square in [r * r, r * r + r, r * r + r + 1, (r * r).saturating_sub(1), r * r + 2 * r] {
+                    check(square);
+                }
+            }
+        }
+        let mut x = 1_u64;
+        for n in 0..1_000_000 {
+            x = x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            check(x >> (n % 64));
+        }
+        (0..100_000).for_each(check);
+        [u64::MAX, 1 << 62, (1 << 62) - 1, 1 << 60, (1 << 60) - 1].into_iter().for_each(check);
+    }
+}

@@ -1,0 +1,97 @@
+//! The numbers the method computes with.
+//!
+//! Every function that is not plain arithmetic is this crate's own or goes through `libm`, never through the platform's math
+//! library: then a PC and a microcontroller compute the same bits from the same inputs.
+
+mod angle;
+mod fixed;
+mod float;
+mod integer;
+mod square_root;
+mod transcendental;
+
+pub use self::fixed::Fixed;
+
+use core::fmt::{Debug, Display};
+use core::ops::Neg;
+use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign};
+use num_traits::{One, Zero};
+
+/// A number type the method can run on: `f32`, `f64` or [`Fixed`].
+///
+/// Small on purpose: only the operations the method needs.
+///
+/// ```
+/// use pliant_core::Scalar;
+/// assert_eq!(<f32 as Scalar>::from_f64(2.0).sqrt(), libm::sqrtf(2.0));
+/// ```
+pub trait Scalar:
+    nalgebra::Scalar
+    + Copy
+    + Debug
+    + Display
+    + PartialOrd
+    + Zero
+    + One
+    + Neg<Output = Self>
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
+{
+    /// Distance from one to the next larger number.
+    const EPSILON: Self;
+    /// Largest finite number.
+    const MAX: Self;
+    /// An obstacle with a larger Gamma is too far to matter: in floating point it would not change a digit of the velocity, in
+    /// fixed point Gamma is near the end of the range.
+    const FAR: Self;
+    /// Smallest hard semi-axis of an obstacle, m: its reciprocal has to fit.
+    const MIN_AXIS: Self;
+
+    /// The nearest number of this type.
+    fn from_f64(x: f64) -> Self;
+    /// The same number as `f64`, exactly.
+    fn to_f64(self) -> f64;
+    /// Neither infinite nor not-a-number.
+    fn is_finite(self) -> bool;
+    /// |x|
+    fn abs(self) -> Self;
+    /// Square root. Below zero: not-a-number, or zero for a type without one.
+    fn sqrt(self) -> Self;
+    /// e^x
+    fn exp(self) -> Self;
+    /// Sine, x in rad.
+    fn sin(self) -> Self;
+    /// Cosine, x in rad.
+    fn cos(self) -> Self;
+    /// Sine and cosine, x in rad: cheaper than one after the other. Error for |x| <= pi: 2e-16 (`f64`), 1e-7 (`f32`),
+    /// 1e-6 ([`Fixed`], any x).
+    fn sin_cos(self) -> (Self, Self);
+    /// Angle of the point (x, self), in rad, from -pi to pi; zero at the origin, and -0 counts as 0.
+    ///
+    /// Error, rad: 9e-16 (`f64`), 2e-7 (`f32`), 1.5e-6 ([`Fixed`]).
+    fn atan2(self, x: Self) -> Self;
+    /// Length and angle (as [`Scalar::atan2`]) of the point (x, y): for little more than the angle. Error of the length: 2e-16 (`f64`), 2e-7 (`f32`) of
+    /// it, one step ([`Fixed`]).
+    fn polar(x: Self, y: Self) -> (Self, Self);
+    /// A bound on the rounding error of one product of terms of this size.
+    fn rounding(size: Self) -> Self;
+    /// Euclidean length, for components whose squares need not fit in fixed point.
+    fn norm(components: &[Self]) -> Self;
+    /// a_0 b_0 + a_1 b_1 + ..., as far as both go.
+    fn dot(a: &[Self], b: &[Self]) -> Self;
+
+    /// The smaller of two numbers.
+    fn min(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+    /// The larger of two numbers.
+    fn max(self, other: Self) -> Self {
+        if other > self { other } else { self }
+    }
+    /// x^n for a whole n >= 0, by repeated multiplication.
+    fn powi(self, n: u8) -> Self {
+        (0..n).fold(Self::one(), |y, _| y * self)
+    }
+}

@@ -1,0 +1,273 @@
+//! The shapes a hard core may have, and the one small trait through which the method sees them.
+//!
+//! A shape lives in its own frame, about the origin, and is star-shaped there: each ray from the origin meets its surface once, at a distance
+//! R. The method looks at it through scaled coordinates u (one factor an axis: safety factors, soft layers, growth), in which
+//!
+//! ```text
+//! gamma(u) = (|u| / R(u))^2p          below 1 inside, 1 on the surface, above 1 outside
+//! ```
+//!
+//! with p = 1 for all but the superellipsoid. Turned inside out, as a wall, the same shape has 1/gamma.
+
+mod polygon;
+mod rounded;
+mod superellipsoid;
+
+#[cfg(test)]
+mod tests;
+
+pub use polygon::{MAX_VERTICES, Polygon};
+
+use crate::{ObstacleError, RANGE, Scalar, Vector};
+use rounded::Rounded;
+use superellipsoid::Superellipsoid;
+pub(crate) use superellipsoid::root;
+
+/// Largest curvature exponent p.
+pub const MAX_CURVATURE: u8 = 8;
+
+/// The shape of a hard core, in its own frame; lengths in metres.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape<S: Scalar, const D: usize> {
+    /// sum_i |q_i / a_i|^2p = 1: an ellipsoid for p = 1, nearly a box for p = [`MAX_CURVATURE`].
+    Ellipsoid {
+        /// a, the semi-axes.
+        axes: Vector<S, D>,
+        /// p
+        curvature: u8,
+    },
+    /// A box whose edges and corners are rounded; with a rounding of half the shorter side, a stadium.
+    Box {
+        /// Half of each side.
+        half: Vector<S, D>,
+        /// Radius of the edges, above zero and at most the least half side.
+        rounding: S,
+    },
+    /// A cylinder about the third axis whose rims are rounded. Only in 3-D.
+    Cylinder {
+        /// Radius.
+        radius: S,
+        /// Half of its length.
+        half_length: S,
+        /// Radius of the rims, above zero, at most the radius and half the length.
+        rounding: S,
+    },
+    /// A segment of the third axis with everything within `radius` of it. Only in 3-D.
+    Capsule {
+        /// Radius.
+        radius: S,
+        /// Half of the segment's length; the capsule is `radius` longer on both sides.
+        half_length: S,
+    },
+    /// A polygon, star-shaped about the origin. Only in 2-D.
+    Polygon(Polygon<S>),
+}
+
+/// What the method asks of a shape: Gamma, its gradient, and half-spaces that keep a point out (or in).
+pub(crate) trait Surface<S: Scalar, const D: usize> {
+    /// gamma(u), and the direction of its gradient, of a length that neither overflows nor underflows; zero at the origin.
+    fn level(&self, u: &Vector<S, D>) -> (S, Vector<S, D>);
+
+    /// Calls `keep(n, slack)` for half-spaces of displacements delta, in the shape's own frame, such that a point whose displacement
+    /// fulfils n.delta >= -slack for all of them is outside the body (as a wall: inside) wherever it goes within `at.step`.
+    fn keep_out(&self, at: &Place<'_, S, D>, keep: impl FnMut(Vector<S, D>, S));
+}
+
+/// A point that is to be kept out, and the scale of the shape it is to be kept out of.
+pub(crate) struct Place<'a, S: Scalar, const D: usize> {
+    /// u, scaled coordinates.
+    pub u: Vector<S, D>,
+    /// u_i / q_i, dimensionless or 1/m.
+    pub inverse: &'a Vector<S, D>,
+    /// Is the shape a wall, to be kept inside of?
+    pub wall: bool,
+    /// The displacement that is wished for, in scaled coordinates: where there is a choice of half-spaces, one that leaves room for it.
+    pub wish: Vector<S, D>,
+    /// No displacement is longer, m.
+    pub step: S,
+    /// Surfaces farther than this need no half-space, m.
+    pub reach: S,
+}
+
+impl<S: Scalar, const D: usize> Shape<S, D> {
+    /// A superellipsoid; see [`Shape::Ellipsoid`].
+    pub fn ellipsoid(axes: Vector<S, D>) -> Self {
+        Self::Ellipsoid { axes, curvature: 1 }
+    }
+
+    /// Checks every length.
+    pub(crate) fn check(&self) -> Result<(), ObstacleError> {
+        let length = |x: S| x >= S::MIN_AXIS && x <= S::from_f64(RANGE);
+        let check = |ok: bool, error: ObstacleError| if ok { Ok(()) } else { Err(error) };
+        match self {
+            Self::Ellipsoid { axes, curvature } => {
+                check(axes.iter().all(|a| length(*a)), ObstacleError::Axes)?;
+                check((1..=MAX_CURVATURE).contains(curvature), ObstacleError::Curvature)
+            }
+            Self::Box { half, rounding } => {
+                check(half.iter().all(|a| length(*a)), ObstacleError::Axes)?;
+                check(length(*rounding) && half.iter().all(|a| rounding <= a), ObstacleError::Rounding)
+            }
+            Self::Cylinder { radius, half_length, rounding } => {
+                check(D == 3, ObstacleError::Dimension)?;
+                check(length(*radius) && length(*half_length), ObstacleError::Axes)?;
+                check(length(*rounding) && rounding <= radius && rounding <= half_length, ObstacleError::Rounding)
+            }
+            Self::Capsule { radius, half_length } => {
+                check(D == 3, ObstacleError::Dimension)?;
+                let bound = S::from_f64(RANGE);
+                check(length(*radius) && *half_length >= S::zero() && *half_length <= bound, ObstacleError::Axes)
+            }
+            Self::Polygon(polygon) => {
+                check(D == 2, ObstacleError::Dimension)?;
+                polygon.check()
+            }
+        }
+    }
+
+    /// Half of the shape's extent along each axis of its frame, m.
+    pub fn extent(&self) -> Vector<S, D> {
+        match self {
+            Self::Ellipsoid { axes, .. } => *axes,
+            Self::Box { half, .. } => *half,
+            Self::Cylinder { radius, half_length, .. } => {
+                Vector::from_fn(|i, _| if i < 2 { *radius } else { *half_length })
+            }
+            Self::Capsule { radius, half_length } => {
+                Vector::from_fn(|i, _| if i < 2 { *radius } else { *half_length + *radius })
+            }
+            Self::Polygon(polygon) => {
+                let [x, y] = polygon.extent();
+                Vector::from_fn(|i, _| if i == 0 { x } else { y })
+            }
+        }
+    }
+
+    /// What growth is measured by, m: an extent that becomes longer by a metre makes its axis so much longer in proportion. Scaled by one factor an
+    /// axis, a polygon would uncover parts of itself, so it has one for both: the distance of the nearest edge, and no edge moves less.
+    pub(crate) fn growing_extent(&self) -> Vector<S, D> {
+        match self {
+            Self::Polygon(polygon) => {
+                let (scaled, longest) = polygon.scaled();
+                Vector::from_element(scaled.inner() * longest)
+            }
+            _ => self.extent(),
+        }
+    }
+
+    /// The most the surface moves along its normal where every growing extent becomes a metre longer, m: sum_i |n_i y_i| / e_i.
+    pub(crate) fn growing_most(&self) -> S {
+        match self {
+            Self::Ellipsoid { curvature: 1, .. } => S::one(),
+            Self::Polygon(_) => self.outer() / self.growing_extent()[0],
+            _ => S::from_f64(if D == 2 { core::f64::consts::SQRT_2 } else { 1.732_050_807_568_877_2 }),
+        }
+    }
+
+    /// And the least.
+    pub(crate) fn growing_least(&self) -> S {
+        let extent = self.growing_extent();
+        let least = extent.iter().fold(S::MAX, |m, x| m.min(*x));
+        let most = extent.iter().fold(S::zero(), |m, x| m.max(*x));
+        least / most
+    }
+
+    /// An r for which all of the shape lies in |q| <= r, m.
+    pub(crate) fn outer(&self) -> S {
+        crate::norm(&self.extent())
+    }
+
+    /// The body of this shape, and the lengths at which its scaled coordinates are one, m.
+    pub(crate) fn body(&self) -> (Body<S, D>, Vector<S, D>) {
+        let longest = self.extent().iter().fold(S::zero(), |m, a| m.max(*a));
+        let one = |x: S| x / longest;
+        let rounded = match self {
+            Self::Ellipsoid { axes, curvature } => {
+                return (Body::Superellipsoid(Superellipsoid { p: *curvature }), *axes);
+            }
+            Self::Polygon(polygon) => {
+                return (Body::Polygon { scale: polygon.scaled().0.scale() }, Vector::from_element(longest));
+            }
+            Self::Box { half, rounding } => Rounded::rounded_box(&half.map(one), one(*rounding)),
+            Self::Cylinder { radius, half_length, rounding } => {
+                Rounded::cylinder(one(*radius), one(*half_length), one(*rounding))
+            }
+            Self::Capsule { radius, half_length } => Rounded::capsule(one(*radius), one(*half_length)),
+        };
+        (Body::Rounded(rounded), Vector::from_element(longest))
+    }
+}
+
+/// A shape made ready for scaled coordinates: those of an ellipsoid are in semi-axes, of all else in the longest semi-extent (a
+/// polygon's corners stay where they are, in the [`Shape`]).
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Body<S: Scalar, const D: usize> {
+    Superellipsoid(Superellipsoid),
+    Rounded(Rounded<S, D>),
+    Polygon { scale: S },
+}
+
+impl<S: Scalar, const D: usize> Body<S, D> {
+    /// p: gamma is the gauge to the power of 2p.
+    pub fn power(&self) -> u8 {
+        match self {
+            Self::Superellipsoid(body) => body.p,
+            _ => 1,
+        }
+    }
+
+    /// Is the whole surface seen from this point of the shape's scaled coordinates?
+    pub fn sees_all(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> bool {
+        match (self, shape) {
+            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).sees_all(u),
+            _ => self.level(shape, u).0 < S::one(),
+        }
+    }
+
+    /// The largest r for which |u| <= r lies inside; and the gauge |u|/R(u) changes by no more than |du|/r.
+    pub fn inner(&self, shape: &Shape<S, D>) -> S {
+        match (self, shape) {
+            (Self::Rounded(body), _) => body.inner(),
+            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).inner(),
+            _ => S::one(),
+        }
+    }
+
+    /// gamma(u), and the direction of its gradient.
+    #[inline(always)]
+    pub fn level(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> (S, Vector<S, D>) {
+        if let Self::Superellipsoid(Superellipsoid { p: 1 }) = self {
+            return (S::dot(u.as_slice(), u.as_slice()), *u);
+        }
+        // Taken apart, so that an ellipsoid's result need not pass through the memory of the others'.
+        let (gamma, direction) = self.level_of_others(shape, *u);
+        (gamma, Vector::from_fn(|i, _| direction[i]))
+    }
+
+    /// The same for all but ellipsoids.
+    #[inline(never)]
+    fn level_of_others(&self, shape: &Shape<S, D>, u: Vector<S, D>) -> (S, Vector<S, D>) {
+        let u = &u;
+        match (self, shape) {
+            (Self::Superellipsoid(body), _) => body.level(u),
+            (Self::Rounded(body), _) => body.level(u),
+            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).level(u),
+            _ => (S::zero(), Vector::zeros()),
+        }
+    }
+
+    /// Half-spaces that keep a point out of the body, or inside it as a wall; see [`Surface::keep_out`].
+    pub fn keep_out(&self, shape: &Shape<S, D>, at: &Place<'_, S, D>, keep: impl FnMut(Vector<S, D>, S)) {
+        match (self, shape) {
+            (Self::Superellipsoid(body), _) => body.keep_out(at, keep),
+            (Self::Rounded(body), _) => body.keep_out(at, keep),
+            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).keep_out(at, keep),
+            _ => {}
+        }
+    }
+}
+
+/// Points into a body's half-spaces at its very centre, where it has no gradient: out along the first axis.
+fn first_axis<S: Scalar, const D: usize>(length: S) -> Vector<S, D> {
+    Vector::from_fn(|i, _| if i == 0 { length } else { S::zero() })
+}

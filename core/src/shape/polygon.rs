@@ -1,0 +1,313 @@
+//! Polygons in the plane that are star-shaped about their origin: not convex, but every ray from the origin leaves them once.
+
+use super::{Place, Surface};
+use crate::{ObstacleError, RANGE, Scalar, Vector};
+
+/// Most corners of a polygon.
+pub const MAX_VERTICES: usize = 12;
+/// The share of an edge, at each end, over which the normal turns towards that of the neighbour.
+const BLEND: f64 = 0.2;
+
+/// A polygon, star-shaped about the origin: [`Polygon::new`] checks the number of corners, an obstacle the rest.
+///
+/// Between two corners v and w a point is u = alpha v + beta w, and its gauge is alpha + beta. The gradient of the gauge is the edge's normal
+/// (scaled), which would jump at a corner; near one it is blended with that of the next edge, so that the velocity is continuous.
+///
+/// ```
+/// use pliant_core::{Obstacle, ObstacleSpec, Vector, shape::{Polygon, Shape}};
+/// let arrow = Polygon::new(&[[0.1, 0.0], [-0.06, 0.08], [-0.02, 0.0], [-0.06, -0.08]]).unwrap();
+/// let obstacle = Obstacle::new(ObstacleSpec { shape: Shape::Polygon(arrow), ..ObstacleSpec::default() }).unwrap();
+/// assert!((obstacle.gamma(&Vector::<f64, 2>::new(-0.02, 0.0)) - 1.0).abs() < 1e-12);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polygon<S> {
+    vertices: heapless::Vec<[S; 2], MAX_VERTICES>,
+}
+
+/// An edge from `from` to `to`; `normal.z = 1` along it.
+struct Edge<S> {
+    from: [S; 2],
+    to: [S; 2],
+    normal: [S; 2],
+}
+
+impl<S: Scalar> Edge<S> {
+    /// None where the edge's line goes through the origin or on its wrong side.
+    fn new(from: [S; 2], to: [S; 2]) -> Option<Self> {
+        let double_area = cross(from, to);
+        let along = sub(to, from);
+        // |normal| = 1/distance of the edge's line.
+        let normal = [along[1] / double_area, -along[0] / double_area];
+        (double_area > S::zero()).then_some(Self { from, to, normal })
+    }
+}
+
+impl<S: Scalar> Polygon<S> {
+    /// From its corners, counter-clockwise, m; `None` unless there are three to [`MAX_VERTICES`].
+    pub fn new(vertices: &[[S; 2]]) -> Option<Self> {
+        let vertices = heapless::Vec::from_slice(vertices).ok()?;
+        (vertices.len() >= 3).then_some(Self { vertices })
+    }
+
+    /// The corners, counter-clockwise, m.
+    pub fn vertices(&self) -> &[[S; 2]] {
+        &self.vertices
+    }
+
+    /// Within range, each corner to the left of the one before as seen from the origin, once round, and no edge passes the origin closer
+    /// than the least semi-axis.
+    pub(super) fn check(&self) -> Result<(), ObstacleError> {
+        let bound = S::from_f64(RANGE);
+        if !self.vertices.iter().flatten().all(|x| x.abs() <= bound) {
+            return Err(ObstacleError::Vertices);
+        }
+        let (scaled, longest) = self.scaled();
+        let around = scaled.edges().count() == self.vertices.len();
+        // Each edge turns by less than half a turn, so the first axis is crossed upwards as often as the polygon goes round.
+        let turns = scaled.pairs().filter(|(a, b)| a[1] < S::zero() && b[1] >= S::zero()).count();
+        let roomy = scaled.inner() * longest >= S::MIN_AXIS;
+        if around && turns == 1 && roomy { Ok(()) } else { Err(ObstacleError::Vertices) }
+    }
+
+    /// In terms of its longest semi-extent, and that, m: small polygons would lose their digits in fixed point.
+    pub(super) fn scaled(&self) -> (Scaled<'_, S>, S) {
+        let [x, y] = self.extent();
+        let longest = x.max(y);
+        (Scaled { vertices: &self.vertices, scale: S::one() / longest }, longest)
+    }
+
+    pub(super) fn extent(&self) -> [S; 2] {
+        self.vertices.iter().fold([S::zero(); 2], |[x, y], v| [x.max(v[0].abs()), y.max(v[1].abs())])
+    }
+}
+
+/// A polygon's corners, all times a scale.
+pub(super) struct Scaled<'a, S> {
+    vertices: &'a [[S; 2]],
+    scale: S,
+}
+
+impl<S: Scalar> Polygon<S> {
+    /// With a scale found before.
+    pub(super) fn at_scale(&self, scale: S) -> Scaled<'_, S> {
+        Scaled { vertices: &self.vertices, scale }
+    }
+}
+
+impl<S: Scalar> Scaled<'_, S> {
+    pub fn scale(&self) -> S {
+        self.scale
+    }
+
+    /// Is this point on the inner side of every edge's line, so that it sees the whole polygon?
+    pub fn sees_all<const D: usize>(&self, r: &Vector<S, D>) -> bool {
+        self.edges().all(|e| dot(e.normal, plane(r)) < S::one())
+    }
+
+    /// The distance of the nearest edge's line from the origin.
+    pub fn inner(&self) -> S {
+        self.edges().fold(S::MAX, |least, e| least.min(S::one() / S::norm(&e.normal)))
+    }
+
+    fn pairs(&self) -> impl Iterator<Item = ([S; 2], [S; 2])> {
+        let scale = self.scale;
+        let all = self.vertices.iter().map(move |v| [v[0] * scale, v[1] * scale]);
+        all.clone().zip(all.clone().skip(1).chain(all.take(1)))
+    }
+
+    fn edges(&self) -> impl Iterator<Item = Edge<S>> {
+        self.pairs().filter_map(|(from, to)| Edge::new(from, to))
+    }
+
+    /// The place of the corner at which the edge ends that the ray through u leaves by.
+    fn leaving(&self, u: [S; 2]) -> Option<usize> {
+        let turn = |v: &[S; 2]| cross([v[0] * self.scale, v[1] * self.scale], u);
+        let mut before = turn(self.vertices.last()?);
+        self.vertices.iter().position(|v| {
+            let here = turn(v);
+            let between = before >= S::zero() && here < S::zero();
+            before = here;
+            between
+        })
+    }
+
+    /// The edge that ends at the i-th corner.
+    fn ending(&self, i: usize) -> Option<Edge<S>> {
+        let at = |i: usize| self.vertices.get(i).map(|v| [v[0] * self.scale, v[1] * self.scale]);
+        Edge::new(at(self.before(i))?, at(i)?)
+    }
+
+    /// The places of the corners before and after the i-th.
+    fn before(&self, i: usize) -> usize {
+        if i == 0 { self.vertices.len() - 1 } else { i - 1 }
+    }
+
+    fn after(&self, i: usize) -> usize {
+        if i + 1 == self.vertices.len() { 0 } else { i + 1 }
+    }
+}
+
+impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
+    fn level(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
+        let u = plane(u);
+        let Some((end, edge)) = self.leaving(u).and_then(|end| Some((end, self.ending(end)?))) else {
+            return (S::zero(), Vector::zeros());
+        };
+        let (half, band) = (S::from_f64(0.5), S::from_f64(BLEND));
+        let gauge = dot(edge.normal, u);
+        let beta = cross(edge.from, u) / cross(edge.from, edge.to);
+        // Where on the edge, 0 to 1; the neighbour's share is a half at the corner and fades over the band.
+        let along = beta / gauge;
+        let share = |t: S| ((band - t) / band).max(S::zero()).min(S::one()) * half;
+        let (first, last) = (share(along), share(S::one() - along));
+        let own = S::one() - first - last;
+        let mut normal = [edge.normal[0] * own, edge.normal[1] * own];
+        // Far from both corners no neighbour counts.
+        for (share, neighbour) in [(first, self.before(end)), (last, self.after(end))] {
+            if share > S::zero()
+                && let Some(neighbour) = self.ending(neighbour)
+            {
+                normal = [normal[0] + neighbour.normal[0] * share, normal[1] + neighbour.normal[1] * share];
+            }
+        }
+        (gauge * gauge, vector(normal))
+    }
+
+    /// A polygon is cut at its notches into convex pieces about the origin (and where one would go half round), what is outside of it into sectors
+    /// beyond the edges, between the rays through their ends. Off each of these, behind any of its sides, keeps off the whole, corners
+    /// and notches included.
+    fn keep_out(&self, at: &Place<'_, S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
+        let (u, wish) = (plane(&at.u), plane(&at.wish));
+        let fastest = at.inverse.iter().fold(S::zero(), |m, i| m.max(*i));
+        let mut off = |piece: &Piece<S>| {
+            if let Some(side) = &piece.best
+                && side.gap < at.reach * fastest * size(side.normal)
+            {
+                keep(vector::<S, D>(side.normal).component_mul(at.inverse), side.gap);
+            }
+        };
+        if at.wall {
+            for edge in self.edges() {
+                let mut piece = Piece::new(edge.from);
+                piece.edge(&edge, u, wish, -S::one());
+                piece.close(edge.to, u, wish);
+                off(&piece);
+            }
+            return;
+        }
+        let notch =
+            self.edges().zip(self.edges().skip(1).chain(self.edges().take(1))).position(|(a, b)| is_notch(&a, &b));
+        let Some(notch) = notch else {
+            // Convex: one piece, and all its sides are edges.
+            let mut whole = Piece::new([S::zero(); 2]);
+            self.edges().for_each(|edge| whole.edge(&edge, u, wish, S::one()));
+            return off(&whole);
+        };
+        // From the first notch on, once round.
+        let mut piece: Option<(Piece<S>, Edge<S>)> = None;
+        let n = self.vertices.len();
+        for edge in self.edges().skip(notch + 1).chain(self.edges().take(notch + 1)).take(n) {
+            let open = match piece.take() {
+                Some((open, last)) if !is_notch(&last, &edge) && cross(open.from, edge.to) > S::zero() => Some(open),
+                Some((mut done, last)) => {
+                    done.close(last.to, u, wish);
+                    off(&done);
+                    None
+                }
+                None => None,
+            };
+            let mut open = open.unwrap_or_else(|| Piece::new(edge.from));
+            open.edge(&edge, u, wish, S::one());
+            piece = Some((open, edge));
+        }
+        if let Some((mut last, edge)) = piece {
+            last.close(edge.to, u, wish);
+            off(&last);
+        }
+    }
+}
+
+/// Does the polygon turn right from one edge to the next?
+fn is_notch<S: Scalar>(a: &Edge<S>, b: &Edge<S>) -> bool {
+    cross(sub(a.to, a.from), sub(b.to, b.from)) < S::zero()
+}
+
+/// A convex piece of a body, and the side of it to keep behind.
+struct Piece<S> {
+    /// The corner where it begins.
+    from: [S; 2],
+    best: Option<Side<S>>,
+}
+
+/// The side's normal, of any length, and how far u is beyond it and will be if it goes on as it wishes, times that length.
+struct Side<S> {
+    normal: [S; 2],
+    gap: S,
+    then: S,
+}
+
+impl<S: Scalar> Piece<S> {
+    fn new(from: [S; 2]) -> Self {
+        Self { from, best: None }
+    }
+
+    /// One of its outer sides.
+    fn edge(&mut self, edge: &Edge<S>, u: [S; 2], wish: [S; 2], sign: S) {
+        let normal = [edge.normal[0] * sign, edge.normal[1] * sign];
+        let gap = (dot(edge.normal, u) - S::one()) * sign;
+        self.consider(Side { normal, gap, then: gap + dot(normal, wish) });
+    }
+
+    /// Its two sides along the rays through its first and last corners. Only whoever is beyond one keeps behind it: from within, the way out is
+    /// over an edge.
+    fn close(&mut self, to: [S; 2], u: [S; 2], wish: [S; 2]) {
+        for (v, sign) in [(self.from, S::one()), (to, -S::one())] {
+            let normal = [v[1] * sign, -v[0] * sign];
+            let gap = dot(normal, u);
+            if gap > S::zero() {
+                self.consider(Side { normal, gap, then: gap + dot(normal, wish) });
+            }
+        }
+    }
+
+    /// Of the sides that u is beyond, the one that is least in its way; if it is beyond none, the one it is least behind.
+    fn consider(&mut self, side: Side<S>) {
+        let better = self.best.as_ref().is_none_or(|best| {
+            let (own, other) = (size(side.normal), size(best.normal));
+            match (side.gap > S::zero(), best.gap > S::zero()) {
+                (true, true) => side.then * other > best.then * own,
+                (false, false) => side.gap * other > best.gap * own,
+                (beyond, _) => beyond,
+            }
+        });
+        if better {
+            self.best = Some(side);
+        }
+    }
+}
+
+fn plane<S: Scalar, const D: usize>(v: &Vector<S, D>) -> [S; 2] {
+    let mut all = v.iter().copied();
+    [all.next().unwrap_or_else(S::zero), all.next().unwrap_or_else(S::zero)]
+}
+
+fn vector<S: Scalar, const D: usize>(v: [S; 2]) -> Vector<S, D> {
+    Vector::from_fn(|i, _| v.get(i).copied().unwrap_or_else(S::zero))
+}
+
+fn cross<S: Scalar>(a: [S; 2], b: [S; 2]) -> S {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+fn dot<S: Scalar>(a: [S; 2], b: [S; 2]) -> S {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// |v_1| + |v_2|
+fn size<S: Scalar>(v: [S; 2]) -> S {
+    v[0].abs() + v[1].abs()
+}
+
+fn sub<S: Scalar>(a: [S; 2], b: [S; 2]) -> [S; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}

@@ -1,0 +1,170 @@
+//! Boxes, cylinders and capsules: a smaller body with everything within a radius r of it, so that normals turn without a jump.
+
+use super::{Place, Surface, first_axis};
+use crate::{Scalar, Vector};
+
+/// A box (or, about the third axis, a cylinder) with semi-extents `half`, and everything within `radius` of it.
+///
+/// Its gauge lambda = |u|/R(u) is where the body, lambda times as large, has u on its surface:
+///
+/// ```text
+/// sum_i max(t_i - lambda h_i, 0)^2 = (lambda r)^2,   t_i = |u_i|, or for a cylinder t = (|(u_1, u_2)|, |u_3|)
+/// ```
+///
+/// a quadratic equation once it is known which terms are positive: i is not where the left side, at lambda = t_i/h_i, is still larger.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Rounded<S: Scalar, const D: usize> {
+    half: Vector<S, D>,
+    radius: S,
+    /// Are the first two coordinates one distance from the axis?
+    turned: bool,
+}
+
+/// The gauge at a point and its gradient, in terms of t and in those of u.
+struct Gauge<S: Scalar, const D: usize> {
+    lambda: S,
+    gradient: Vector<S, D>,
+}
+
+impl<S: Scalar, const D: usize> Rounded<S, D> {
+    pub fn rounded_box(half: &Vector<S, D>, rounding: S) -> Self {
+        Self { half: half.map(|a| a - rounding), radius: rounding, turned: false }
+    }
+
+    pub fn cylinder(radius: S, half_length: S, rounding: S) -> Self {
+        let half = [radius - rounding, S::zero(), half_length - rounding];
+        Self {
+            half: Vector::from_fn(|i, _| half.get(i).copied().unwrap_or_else(S::zero)),
+            radius: rounding,
+            turned: true,
+        }
+    }
+
+    pub fn capsule(radius: S, half_length: S) -> Self {
+        Self { half: Vector::from_fn(|i, _| if i == 2 { half_length } else { S::zero() }), radius, turned: true }
+    }
+
+    fn gauge(&self, u: &Vector<S, D>) -> Gauge<S, D> {
+        let zero = S::zero();
+        let t = self.distances(u);
+        let across = t[0];
+        let h = &self.half;
+        let counts = Vector::<S, D>::from_fn(|i, _| {
+            let beyond = (0..D).fold(zero, |sum, j| {
+                let e = (t[j] * h[i] - t[i] * h[j]).max(zero);
+                sum + e * e
+            });
+            let reach = t[i] * self.radius;
+            if beyond <= reach * reach { S::one() } else { zero }
+        });
+        let (th, tt, hh) =
+            (t.component_mul(&counts), t.dot(&t.component_mul(&counts)), h.component_mul(&counts).dot(h));
+        let b = th.dot(h);
+        let r = self.radius;
+        // b^2 - a c is never negative but by rounding.
+        let root = (b * b - (hh - r * r) * tt).max(zero).sqrt();
+        if !(b + root > zero) {
+            return Gauge { lambda: zero, gradient: Vector::zeros() };
+        }
+        let lambda = tt / (b + root);
+        let outward = Vector::<S, D>::from_fn(|i, _| (t[i] - lambda * h[i]).max(zero) * counts[i]);
+        let slope = S::one() / (outward.dot(h) + lambda * r * r);
+        let gradient = Vector::from_fn(|i, _| {
+            let along = if self.turned && i < 2 {
+                if across > zero { outward[0] * (u[i] / across) } else { zero }
+            } else if u[i] < zero {
+                -outward[i]
+            } else {
+                outward[i]
+            };
+            along * slope
+        });
+        Gauge { lambda, gradient }
+    }
+
+    /// Radius of the largest ball inside.
+    pub fn inner(&self) -> S {
+        let flat = |i: usize| self.turned && i == 1;
+        let least = self.half.iter().enumerate().filter(|(i, _)| !flat(*i)).fold(S::MAX, |m, (_, h)| m.min(*h));
+        least + self.radius
+    }
+}
+
+impl<S: Scalar, const D: usize> Surface<S, D> for Rounded<S, D> {
+    fn level(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
+        let Gauge { lambda, gradient } = self.gauge(u);
+        (lambda * lambda, gradient)
+    }
+
+    fn keep_out(&self, at: &Place<'_, S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
+        if at.wall {
+            return self.keep_in(at, keep);
+        }
+        let Gauge { lambda, gradient } = self.gauge(&at.u);
+        if lambda > S::zero() {
+            keep(gradient.component_mul(at.inverse), lambda - S::one());
+        } else {
+            keep(first_axis(at.inverse[0]), -(self.half[0] + self.radius));
+        }
+    }
+}
+
+impl<S: Scalar, const D: usize> Rounded<S, D> {
+    /// With k the point of the smaller body nearest to u, |u + delta - k| <= r is enough to stay inside; with |delta| <= L that is
+    /// n.delta <= sqrt(r^2 - L^2) - |u - k|. Within the smaller body a step shorter than r ends inside anyway.
+    fn keep_in(&self, at: &Place<'_, S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
+        let zero = S::zero();
+        let fastest = at.inverse.iter().fold(zero, |m, i| m.max(*i));
+        let stride = at.step * fastest;
+        let room = self.radius * self.radius - stride * stride;
+        if room > zero {
+            let (away, _) = self.beyond(&at.u);
+            let distance = S::norm(away.as_slice());
+            if distance > zero {
+                keep(-(away / distance).component_mul(at.inverse), room.sqrt() - distance);
+            }
+            return;
+        }
+        // Edges sharper than a step is long: stay within the smaller body.
+        let (_, t) = self.beyond(&at.u);
+        for i in 0..D {
+            let mut normal = Vector::<S, D>::zeros();
+            let mut edge = self.half[i];
+            if self.turned && i < 2 {
+                if i == 1 || !(t[0] > zero) {
+                    continue;
+                }
+                (normal[0], normal[1]) = (-at.u[0] / t[0], -at.u[1] / t[0]);
+                edge = (edge * edge - stride * stride).max(zero).sqrt();
+            } else {
+                normal[i] = if at.u[i] < zero { S::one() } else { -S::one() };
+            }
+            keep(normal.component_mul(at.inverse), edge - t[i]);
+        }
+    }
+
+    /// From the nearest point of the smaller body to u; and t, the distances from the axes that its extents are measured along.
+    fn beyond(&self, u: &Vector<S, D>) -> (Vector<S, D>, Vector<S, D>) {
+        let zero = S::zero();
+        let t = self.distances(u);
+        let outward = Vector::from_fn(|i, _| {
+            if self.turned && i < 2 {
+                if t[0] > zero { u[i] * ((t[0] - self.half[0]).max(zero) / t[0]) } else { zero }
+            } else {
+                let beyond = (t[i] - self.half[i]).max(zero);
+                if u[i] < zero { -beyond } else { beyond }
+            }
+        });
+        (outward, t)
+    }
+
+    /// |u_i|; for a cylinder the distance from its axis, nothing, and |u_3|.
+    fn distances(&self, u: &Vector<S, D>) -> Vector<S, D> {
+        let across = if self.turned { S::norm(&u.as_slice()[..2.min(D)]) } else { S::zero() };
+        Vector::from_fn(|i, _| match (self.turned, i) {
+            (true, 0) => across,
+            (true, 1) => S::zero(),
+            _ => u[i].abs(),
+        })
+    }
+}

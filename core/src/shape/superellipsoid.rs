@@ -1,0 +1,78 @@
+//! Ellipsoids and superellipsoids: gamma(u) = sum_i |u_i|^2p, after Khansari-Zadeh & Billard (2012).
+
+use super::{Place, Surface, first_axis};
+use crate::{Scalar, Vector};
+
+/// The unit superellipsoid: the semi-axes are in the scale.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Superellipsoid {
+    pub p: u8,
+}
+
+impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
+    fn level(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
+        let gamma = u.iter().fold(S::zero(), |sum, u| sum + (*u * *u).powi(self.p));
+        // |u|^(2p - 1) overflows far away and underflows near the centre; its direction is that of u / max|u|.
+        let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
+        if !(largest > S::EPSILON * S::EPSILON) {
+            return (gamma, *u);
+        }
+        let scale = S::one() / largest;
+        (gamma, u.map(|u| slope(u * scale, self.p)))
+    }
+
+    fn keep_out(&self, at: &Place<'_, S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
+        let one = S::one();
+        let steepest = at.inverse.iter().fold(S::zero(), |m, i| m.max(*i));
+        let shortest = one / steepest;
+        // Scaled, so that high powers of thin axes stay within range; only the direction counts.
+        let normal = |slopes: Vector<S, D>| slopes.zip_map(at.inverse, |slope, inverse| slope * (inverse * shortest));
+        if at.wall {
+            // gamma is convex with second derivatives up to 2p(2p - 1) within the surface (a fifth more just beyond): what a step may add
+            // to its tangent.
+            let p = (0..self.p).fold(S::zero(), |sum, _| sum + one);
+            let bound = S::from_f64(1.2);
+            let u = at.u.map(|u| u.max(-bound).min(bound));
+            let gamma = u.iter().fold(S::zero(), |sum, u| sum + (*u * *u).powi(self.p));
+            let stride = at.step * steepest;
+            let bend = bound * p * (p + p - one) * stride * stride;
+            let unit = shortest * S::from_f64(0.5) / p;
+            keep(normal(u.map(|u| -slope(u, self.p))), (one - gamma - bend) * unit);
+            return;
+        }
+        // The supporting half-space where the ray from the centre leaves the surface: the normal there is that at u.
+        let largest = at.u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
+        if !(largest > S::zero()) {
+            keep(first_axis(at.inverse[0]), -one);
+            return;
+        }
+        let t = at.u / largest;
+        let level = t.iter().fold(S::zero(), |sum, t| sum + (*t * *t).powi(self.p));
+        let gauge = largest * root(level, self.p);
+        let slopes = t.map(|t| slope(t, self.p));
+        keep(normal(slopes), slopes.dot(&t) * (gauge - one) * (largest / gauge) * shortest);
+    }
+}
+
+/// |u|^(2p - 1) sgn u
+fn slope<S: Scalar>(u: S, p: u8) -> S {
+    (u * u).powi(p.saturating_sub(1)) * u
+}
+
+/// gamma^(1/2p), by Newton's method on y^p = sqrt(gamma) from above.
+pub(crate) fn root<S: Scalar>(gamma: S, p: u8) -> S {
+    let target = gamma.sqrt();
+    if p <= 1 {
+        return target;
+    }
+    let powers = (0..p).fold(S::zero(), |sum, _| sum + S::one());
+    let mut y = target.max(S::one());
+    for _ in 0..60 {
+        let next = y - (y - target / y.powi(p - 1)) / powers;
+        if !(next < y) {
+            break;
+        }
+        y = next;
+    }
+    y
+}

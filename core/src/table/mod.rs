@@ -1,0 +1,243 @@
+//! The obstacles there are, in room for a fixed number of them.
+
+mod ageing;
+mod cluster;
+
+#[cfg(test)]
+mod tests;
+
+pub use ageing::Ageing;
+
+use crate::modulation::Modulation;
+use crate::surroundings::Surroundings;
+use crate::{Obstacle, Scalar, Scan, Status, Vector};
+use cluster::Clusters;
+
+/// An obstacle, who it is, and how long ago it was seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry<S: Scalar, const D: usize> {
+    id: u16,
+    obstacle: Obstacle<S, D>,
+    age: S,
+}
+
+impl<S: Scalar, const D: usize> Entry<S, D> {
+    /// The identifier its owner gave it.
+    pub fn id(&self) -> u16 {
+        self.id
+    }
+    /// As it is now.
+    pub fn obstacle(&self) -> &Obstacle<S, D> {
+        &self.obstacle
+    }
+    /// Seconds since it was seen.
+    pub fn age(&self) -> S {
+        self.age
+    }
+}
+
+/// There is no room for another obstacle; none was dropped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TableFull;
+
+/// At most `CAP` (up to 64) obstacles by their identifiers, and one scan.
+///
+/// Obstacles whose hard cores overlap share a reference point, found when the table changes and carried along with them until it changes again.
+///
+/// ```
+/// use pliant_core::{Ageing, Obstacle, ObstacleSpec, Table, TableFull};
+/// let ball = || Obstacle::new(ObstacleSpec::<f32, 2>::default()).unwrap();
+/// let mut table: Table<f32, 2, 1> = Table::new();
+/// let ageing = Ageing::default();
+/// table.upsert(7, ball(), 0.0, &ageing).unwrap();
+/// table.upsert(7, ball(), 0.0, &ageing).unwrap(); // the same one again
+/// assert_eq!(table.upsert(8, ball(), 0.0, &ageing), Err(TableFull));
+/// assert!(table.remove(7) && table.is_empty());
+/// ```
+#[derive(Clone, Debug)]
+pub struct Table<S: Scalar, const D: usize, const CAP: usize> {
+    entries: heapless::Vec<Entry<S, D>, CAP>,
+    clusters: Clusters<CAP>,
+    scan: Scan<S, D>,
+    revision: u32,
+}
+
+impl<S: Scalar, const D: usize, const CAP: usize> Default for Table<S, D, CAP> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
+    /// An empty table.
+    pub fn new() -> Self {
+        Self { entries: heapless::Vec::new(), clusters: Clusters::new(), scan: Scan::default(), revision: 0 }
+    }
+
+    /// Puts an obstacle in, or in the place of the one with the same identifier. `age` is how many seconds ago it was seen as
+    /// described; it is carried on to now as [`Table::advance`] would have done.
+    ///
+    /// # Errors
+    /// [`TableFull`]; then nothing has changed.
+    pub fn upsert(
+        &mut self,
+        id: u16,
+        mut obstacle: Obstacle<S, D>,
+        age: S,
+        ageing: &Ageing<S>,
+    ) -> Result<(), TableFull> {
+        let age = age.max(S::zero()).min(ageing.hold);
+        if age > S::zero() {
+            obstacle.carry(age);
+        }
+        if age > ageing.time_to_live {
+            obstacle.age(ageing.growth, age - ageing.time_to_live);
+        }
+        if age >= ageing.hold {
+            obstacle.hold();
+        }
+        let entry = Entry { id, obstacle, age };
+        let index = match self.entries.iter_mut().enumerate().find(|(_, e)| e.id == id) {
+            Some((index, old)) => {
+                *old = entry;
+                index
+            }
+            None => {
+                self.entries.push(entry).map_err(|_| TableFull)?;
+                self.entries.len().saturating_sub(1)
+            }
+        };
+        self.clusters.changed(index, &mut self.entries);
+        self.revision = self.revision.wrapping_add(1);
+        Ok(())
+    }
+
+    /// Takes an obstacle out; was it there?
+    pub fn remove(&mut self, id: u16) -> bool {
+        let Some(index) = self.entries.iter().position(|e| e.id == id) else {
+            return false;
+        };
+        self.entries.swap_remove(index);
+        self.clusters.removed(index, &mut self.entries);
+        self.revision = self.revision.wrapping_add(1);
+        true
+    }
+
+    /// Puts a scan in the place of the one before; `age` is how many seconds ago it was taken. One without points takes it away.
+    pub fn set_scan(&mut self, mut scan: Scan<S, D>, age: S, ageing: &Ageing<S>) {
+        scan.carry(age, ageing);
+        self.scan = scan;
+        self.revision = self.revision.wrapping_add(1);
+    }
+
+    /// Takes all obstacles out, and the scan.
+    pub fn clear(&mut self) {
+        self.entries.clear();
+        self.clusters = Clusters::new();
+        self.scan = Scan::default();
+        self.revision = self.revision.wrapping_add(1);
+    }
+
+    /// Counts the changes made by others (not the passage of time), so that a command can name the table it was computed from.
+    pub fn revision(&self) -> u32 {
+        self.revision
+    }
+
+    /// How many obstacles there are, the scan not counted.
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// No obstacles, and no scan?
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty() && self.scan.points().is_empty()
+    }
+
+    /// The obstacles, in no particular order.
+    pub fn iter(&self) -> impl Iterator<Item = &Entry<S, D>> {
+        self.entries.iter()
+    }
+
+    /// The scan.
+    pub fn scan(&self) -> &Scan<S, D> {
+        &self.scan
+    }
+
+    /// Lets `dt` seconds pass: obstacles move on, and the ones nobody spoke of grow, then stop. How old they were before, and whether
+    /// they go together, as status flags.
+    pub fn advance(&mut self, dt: S, ageing: &Ageing<S>) -> Status {
+        let mut status = self.scan.status(ageing) | self.clusters.status();
+        for entry in &mut self.entries {
+            // Beyond the hold time nothing changes, so the age may stop there too and never loses its last digit.
+            if entry.age >= ageing.hold {
+                status |= Status::HELD;
+                entry.obstacle.hold();
+                continue;
+            }
+            entry.obstacle.advance(dt);
+            if entry.age >= ageing.time_to_live {
+                status |= Status::EXTRAPOLATED;
+                entry.obstacle.age(ageing.growth, dt);
+            }
+            entry.age += dt;
+        }
+        self.scan.advance(dt, ageing);
+        status
+    }
+
+    /// How all obstacles look from x, into `around`, which is new: its velocity is bent round them all. With `deformable` false every soft layer is ignored. `reach` is how far
+    /// the robot may see its way ahead, m, and the time step, s, if anything within it is to be listed.
+    #[inline]
+    pub(crate) fn look(
+        &self,
+        x: &Vector<S, D>,
+        deformable: bool,
+        reach: Option<(S, S)>,
+        around: &mut Surroundings<S, D, CAP>,
+    ) {
+        // Here rather than in there, where each obstacle would load and store it.
+        let mut modulation = Modulation::new(&around.velocity);
+        let (mut gamma, mut nearest) = (around.gamma, None);
+        for (index, entry) in self.entries.iter().enumerate() {
+            let sample = entry.obstacle.sample(x);
+            if !(sample.gamma < S::FAR) {
+                continue;
+            }
+            if deformable
+                && entry.obstacle.may_be_soft(sample.gamma)
+                && let Some(layer) = entry.obstacle.soft_layer(x, sample.outward, sample.arm)
+            {
+                // Cannot be full: it has the table's own capacity.
+                let _ = around.soft.push(layer);
+            }
+            if let Some((reach, dt)) = reach {
+                // How far its surface may come in a step, and as much again for the curve of its way.
+                let fastest = sample.surface_velocity.iter().fold(S::zero(), |sum, s| sum + s.abs());
+                let reach = reach + fastest * (dt + dt);
+                if entry.obstacle.is_near(sample.gamma, reach) {
+                    let _ = around.near.push((index, reach));
+                }
+            }
+            if sample.gamma < gamma {
+                (gamma, nearest) = (sample.gamma, Some(entry));
+            }
+            modulation.push(&sample);
+        }
+        if !self.scan.points().is_empty() {
+            let (least, sample) = self.scan.sample(x);
+            if let Some(sample) = &sample {
+                modulation.push(sample);
+            }
+            if least < gamma {
+                (gamma, nearest) = (least, None);
+            }
+        }
+        (around.gamma, around.nearest) = (gamma, nearest.map(Entry::id));
+        (around.velocity, around.unusable) = modulation.finish();
+    }
+
+    /// The obstacle at this place in the table.
+    pub(crate) fn at(&self, index: usize) -> Option<&Obstacle<S, D>> {
+        self.entries.get(index).map(|e| &e.obstacle)
+    }
+}

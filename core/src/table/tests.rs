@@ -1,0 +1,78 @@
+use super::*;
+use crate::{ObstacleSpec, Shape};
+
+fn moving() -> Obstacle<f64, 2> {
+    let velocity = Vector::<f64, 2>::new(0.1, 0.0);
+    Obstacle::new(ObstacleSpec { velocity, ..ObstacleSpec::default() }).unwrap()
+}
+
+#[test]
+fn an_old_obstacle_moves_then_grows_then_is_held() {
+    let ageing = Ageing::default();
+    let mut table: Table<f64, 2, 2> = Table::new();
+    table.upsert(1, moving(), 0.05, &ageing).unwrap();
+    let x = |t: &Table<f64, 2, 2>| t.iter().next().unwrap().obstacle().spec().center.x;
+    let gamma = |t: &Table<f64, 2, 2>| {
+        let o = t.iter().next().unwrap().obstacle();
+        o.gamma(&(o.spec().center + Vector::<f64, 2>::new(0.05, 0.0)))
+    };
+    assert!((x(&table) - 0.005).abs() < 1e-12, "carried on by its age");
+    for _ in 0..100 {
+        table.advance(0.001, &ageing);
+    }
+    assert!(table.advance(0.0, &ageing).is_empty() && (gamma(&table) - 1.0).abs() < 1e-9);
+    for _ in 0..350 {
+        table.advance(0.001, &ageing);
+    }
+    assert_eq!(table.advance(0.0, &ageing), Status::EXTRAPOLATED);
+    assert!(gamma(&table) < 0.9, "grown: {}", gamma(&table));
+    for _ in 0..2000 {
+        table.advance(0.001, &ageing);
+    }
+    assert_eq!(table.advance(0.0, &ageing), Status::HELD);
+    let held = x(&table);
+    assert!((held - 0.1).abs() < 1e-3, "{held}");
+    table.advance(0.001, &ageing);
+    assert_eq!(x(&table), held);
+}
+
+#[test]
+fn an_old_sighting_is_as_if_it_had_aged_here() {
+    let ageing = Ageing::default();
+    let spin = crate::rotation::planar_spin(5.0);
+    let velocity = Vector::<f64, 2>::new(0.1, -0.2);
+    let shape = || Shape::ellipsoid(Vector::<f64, 2>::new(0.08, 0.04));
+    let turning = || Obstacle::new(ObstacleSpec { velocity, spin, shape: shape(), ..ObstacleSpec::default() }).unwrap();
+    for milliseconds in [0, 50, 300, 999, 1000, 5000] {
+        let (mut here, mut there): (Table<f64, 2, 1>, Table<f64, 2, 1>) = (Table::new(), Table::new());
+        here.upsert(1, turning(), 0.0, &ageing).unwrap();
+        for _ in 0..milliseconds {
+            here.advance(0.001, &ageing);
+        }
+        there.upsert(1, turning(), f64::from(milliseconds) * 0.001, &ageing).unwrap();
+        for table in [&mut here, &mut there] {
+            table.advance(0.001, &ageing);
+        }
+        let x = Vector::<f64, 2>::new(0.3, 0.1);
+        let look = |t: &Table<f64, 2, 1>| {
+            let o = t.iter().next().unwrap().obstacle();
+            [o.gamma(&x), o.surface_velocity(&x).x, o.surface_velocity(&x).y]
+        };
+        for (a, b) in look(&here).into_iter().zip(look(&there)) {
+            assert!((a - b).abs() < 5e-3 * (1.0 + a.abs()), "{milliseconds} ms: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn every_change_has_its_revision() {
+    let mut table: Table<f64, 2, 2> = Table::new();
+    table.upsert(1, moving(), 0.0, &Ageing::default()).unwrap();
+    table.advance(0.001, &Ageing::default());
+    assert_eq!(table.revision(), 1);
+    assert!(!table.remove(2));
+    assert_eq!(table.revision(), 1);
+    assert!(table.remove(1));
+    table.clear();
+    assert_eq!(table.revision(), 3);
+}

@@ -1,0 +1,206 @@
+//! Clusters, scans, growth and moving attractors: what a robot does among them.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
+
+use pliant_core::{
+    Ageing, Controller, Motion, Obstacle, ObstacleSpec, RobotState, Scan, Settings, Shape, Status, Vector, rotation,
+};
+
+type V = Vector<f64, 2>;
+
+const FOREVER: Ageing<f64> = Ageing { time_to_live: 3600.0, growth: 0.02, hold: 3600.0 };
+
+fn controller(attractor: V) -> Controller<f64, 2, 16> {
+    let settings = Settings { ageing: FOREVER, ..Settings::default() };
+    Controller::new(Motion::linear(attractor, 2.0).unwrap(), settings)
+}
+
+fn ellipse(x: f64, y: f64, a: f64, b: f64, angle: f64) -> ObstacleSpec<f64, 2> {
+    ObstacleSpec {
+        center: V::new(x, y),
+        rotation: rotation::planar(angle),
+        shape: Shape::ellipsoid(V::new(a, b)),
+        ..ObstacleSpec::default()
+    }
+}
+
+fn put(c: &mut Controller<f64, 2, 16>, specs: &[ObstacleSpec<f64, 2>]) {
+    for (id, spec) in specs.iter().enumerate() {
+        c.upsert(id as u16, Obstacle::new(spec.clone()).unwrap(), 0.0).unwrap();
+    }
+}
+
+fn reference(c: &Controller<f64, 2, 16>, id: u16) -> V {
+    c.table().iter().find(|e| e.id() == id).unwrap().obstacle().reference()
+}
+
+fn gamma(c: &Controller<f64, 2, 16>, id: u16, x: &V) -> f64 {
+    c.table().iter().find(|e| e.id() == id).unwrap().obstacle().gamma(x)
+}
+
+/// Drives for `seconds`; the last position, the least Gamma on the way, and all flags that were set.
+fn drive(c: &mut Controller<f64, 2, 16>, mut x: V, seconds: f64) -> (V, f64, Status) {
+    let (mut least, mut flags) = (f64::MAX, Status::empty());
+    for _ in 0..(seconds * 1000.0) as u32 {
+        let command = c.tick(&RobotState::new(x).unwrap(), 0.001);
+        x += command.velocity * 0.001;
+        least = least.min(command.gamma);
+        flags |= command.status;
+    }
+    (x, least, flags)
+}
+
+#[test]
+fn two_that_overlap_share_the_best_point() {
+    let mut c = controller(V::zeros());
+    put(&mut c, &[ellipse(0.5, 0.0, 0.1, 0.05, 0.4), ellipse(0.6, 0.08, 0.1, 0.04, -0.8)]);
+    let shared = reference(&c, 0);
+    assert!((shared - reference(&c, 1)).norm() < 1e-12);
+    let worst = |x: &V| gamma(&c, 0, x).max(gamma(&c, 1, x));
+    assert!(worst(&shared) < 1.0);
+    for i in 0..60 {
+        let (sin, cos) = (f64::from(i) * 0.1047).sin_cos();
+        assert!(worst(&(shared + V::new(cos, sin) * 1e-4)) >= worst(&shared) - 1e-12, "not the minimiser");
+    }
+    assert!(c.table_mut().remove(1));
+    assert_eq!(reference(&c, 0), V::new(0.5, 0.0), "alone again");
+}
+
+#[test]
+fn the_flow_goes_round_a_union_and_round_a_chain() {
+    // Four in a row across the way; each overlaps only the next.
+    let chain: Vec<_> = (0..4).map(|i| ellipse(0.4, -0.15 + 0.1 * f64::from(i), 0.05, 0.07, 0.0)).collect();
+    for specs in [&chain[1..3], &chain[..]] {
+        for y in [-0.21, -0.12, -0.031, 0.013, 0.1, 0.22] {
+            let mut c = controller(V::zeros());
+            put(&mut c, specs);
+            let (end, least, flags) = drive(&mut c, V::new(0.8, y), 15.0);
+            assert!(end.norm() < 0.01, "from {y} past {} to {end}", specs.len());
+            assert!(least > 1.0 && !flags.intersects(Status::CLUSTER | Status::INFEASIBLE), "{least} {flags:?}");
+        }
+    }
+}
+
+#[test]
+fn a_child_refers_into_its_parent() {
+    let chain: Vec<_> = (0..4).map(|i| ellipse(0.4, 0.1 * f64::from(i), 0.05, 0.07, 0.0)).collect();
+    let mut c = controller(V::zeros());
+    put(&mut c, &chain);
+    // Of the two in the middle, both with two neighbours, the first is the root.
+    assert_eq!(reference(&c, 1), chain[1].center);
+    for (child, parent) in [(0, 1), (2, 1), (3, 2)] {
+        let (point, towards) = (reference(&c, child), reference(&c, parent));
+        let own = chain[usize::from(child)].center;
+        assert!(
+            gamma(&c, child, &point) < 1.0 && (point - towards).norm() < (own - towards).norm(),
+            "{child} in {parent}"
+        );
+    }
+}
+
+#[test]
+fn a_ring_says_so_and_a_star_does_not() {
+    let ring = |n: u32, radius: f64| -> Vec<_> {
+        let at = |i: u32| f64::from(i) * std::f64::consts::TAU / f64::from(n);
+        (0..n).map(|i| ellipse(radius * at(i).cos(), radius * at(i).sin(), 0.1, 0.1, 0.0)).collect()
+    };
+    let flags = |specs: &[ObstacleSpec<f64, 2>]| {
+        let mut c = controller(V::new(2.0, 0.0));
+        put(&mut c, specs);
+        c.tick(&RobotState::new(V::new(1.0, 1.0)).unwrap(), 0.001).status
+    };
+    assert!(flags(&ring(6, 0.18)).contains(Status::CLUSTER));
+    assert!(flags(&ring(3, 0.11)).contains(Status::CLUSTER), "three that overlap in pairs only");
+    assert!(!flags(&ring(3, 0.09)).contains(Status::CLUSTER), "three with a point in common");
+    assert!(!flags(&ring(5, 0.18)).contains(Status::CLUSTER), "five in a ring that do not touch");
+}
+
+#[test]
+fn an_obstacle_in_the_wall_refers_into_the_wall() {
+    let room = ObstacleSpec {
+        shape: Shape::Box { half: V::new(1.0, 0.6), rounding: 0.1 },
+        wall: true,
+        ..ObstacleSpec::default()
+    };
+    let mut c = controller(V::new(-0.7, 0.1));
+    put(&mut c, &[room, ellipse(0.1, 0.55, 0.1, 0.12, 0.0)]);
+    let point = reference(&c, 1);
+    assert!(gamma(&c, 1, &point) < 1.0 && gamma(&c, 0, &point) < 1.0 && point.y > 0.6, "{point}");
+    for y in [0.5, 0.3, 0.0, -0.5] {
+        let mut c = c.clone();
+        let (end, least, flags) = drive(&mut c, V::new(0.8, y), 15.0);
+        assert!((end - V::new(-0.7, 0.1)).norm() < 0.01, "{y}: {end}");
+        assert!(least > 1.0 && !flags.contains(Status::INFEASIBLE));
+    }
+}
+
+fn row(x: f64, y: f64, n: u32) -> impl Iterator<Item = V> {
+    (0..n).map(move |i| V::new(x, y + 0.01 * f64::from(i)))
+}
+
+#[test]
+fn a_corridor_of_range_points_is_gone_through_and_a_dead_end_is_not_touched() {
+    let (one, other): (Vec<V>, Vec<V>) = (row(0.0, 0.1, 40).collect(), row(0.16, 0.1, 40).collect());
+    let corridor = [one, other].concat();
+    for x in [0.02, 0.07, 0.08, 0.11, 0.13] {
+        let mut c = controller(V::new(0.08, -0.2));
+        c.set_scan(Scan::new(&corridor, 0.02).unwrap(), 0.0);
+        let (end, least, flags) = drive(&mut c, V::new(x, 0.8), 25.0);
+        assert!(least > 1.0 && !flags.contains(Status::INFEASIBLE), "{least}");
+        assert!((end - V::new(0.08, -0.2)).norm() < 0.01, "from {x} to {end}");
+    }
+    // Straight at a flat row there is no way round that points alone could tell.
+    let mut c = controller(V::zeros());
+    c.set_scan(Scan::new(&row(0.4, -0.2, 40).collect::<Vec<_>>(), 0.02).unwrap(), 0.0);
+    let (end, least, _) = drive(&mut c, V::new(0.8, -0.1), 25.0);
+    assert!(least > 1.0 && end.x > 0.41, "{least} {end}");
+}
+
+#[test]
+fn one_range_point_is_a_ball() {
+    let mut one = controller(V::zeros());
+    one.set_scan(Scan::new(&[V::new(0.4, 0.0)], 0.05).unwrap(), 0.0);
+    let mut other = controller(V::zeros());
+    put(&mut other, &[ellipse(0.4, 0.0, 0.05, 0.05, 0.0)]);
+    for i in 0..200 {
+        let angle = f64::from(i) * 0.0314;
+        let x = RobotState::new(V::new(0.4 + 0.07 * angle.cos(), 0.07 * angle.sin())).unwrap();
+        let (a, b) = (one.evaluate(&x), other.evaluate(&x));
+        assert!((a.adapted - b.adapted).norm() < 1e-12, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn a_growing_ball_pushes_and_a_shrinking_one_lets_by() {
+    let ball = |growth: f64| ObstacleSpec { growth, ..ellipse(0.0, 0.0, 0.1, 0.1, 0.0) };
+    let mut c = controller(V::new(0.15, 0.0));
+    put(&mut c, &[ball(0.1)]);
+    let (end, least, flags) = drive(&mut c, V::new(0.15, 0.0), 1.0);
+    assert!(end.x > 0.199 && least > 1.0 && !flags.contains(Status::INFEASIBLE), "{end} {least} {flags:?}");
+    let mut c = controller(V::zeros());
+    put(&mut c, &[ball(-0.1)]);
+    let (end, least, _) = drive(&mut c, V::new(0.15, 0.001), 2.0);
+    assert!(end.norm() < 0.01 && least > 1.0, "{end}");
+    let left = c.table().iter().next().unwrap().obstacle().surface(&V::x()).norm();
+    assert!((left - 1e-4).abs() < 1e-9, "what shrinks ends as a speck: {left}");
+}
+
+#[test]
+fn a_moving_attractor_is_caught_and_kept() {
+    let mut c = controller(V::zeros());
+    assert!(c.aim(&V::new(0.5, 0.0), &V::new(0.05, 0.1)));
+    let (end, ..) = drive(&mut c, V::zeros(), 6.0);
+    let there = c.motion().attractor();
+    assert!((there - V::new(0.8, 0.6)).norm() < 1e-9, "{there}");
+    assert!((end - there).norm() < 1e-3, "{end}");
+    assert!(!c.aim(&V::new(f64::NAN, 0.0), &V::zeros()) && !c.aim(&V::new(1e4, 0.0), &V::zeros()));
+    assert_eq!(c.motion().attractor(), there);
+}
+
+#[test]
+fn squeezed_by_two_the_guard_says_so() {
+    let mut c = controller(V::zeros());
+    let from = |x: f64| ObstacleSpec { velocity: V::new(-2.0 * x.signum(), 0.0), ..ellipse(x, 0.0, 0.1, 0.4, 0.0) };
+    put(&mut c, &[from(-0.2), from(0.2)]);
+    let (_, _, flags) = drive(&mut c, V::zeros(), 0.06);
+    assert!(flags.contains(Status::INFEASIBLE), "{flags:?}");
+}

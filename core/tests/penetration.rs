@@ -1,0 +1,77 @@
+//! No core is ever entered while the guard says that it need not be.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
+
+mod world;
+
+use pliant_core::scalar::Fixed;
+use pliant_core::{RobotState, Scalar, Status};
+use world::{Kind, World, gamma, samples, world};
+
+/// Ticks of one world.
+const TICKS: u64 = 250;
+
+#[derive(Default, Debug)]
+struct Tally {
+    ticks: u64,
+    guarded: u64,
+    infeasible: u64,
+    entered: u64,
+}
+
+fn campaign<S: Scalar, const D: usize>(kind: Kind, seed: u64) -> Tally {
+    let mut tally = Tally::default();
+    let mut seed = seed << 32;
+    let wanted = samples(250_000);
+    let (dt, tick) = (S::from_f64(0.001), 0.001);
+    while tally.ticks < wanted {
+        seed += 1;
+        let Some(World { mut controller, start: mut x }) = world::<S, D>(seed, &kind) else { continue };
+        let speed = controller.settings().limits.speed.to_f64();
+        for n in 0..TICKS {
+            let Some(state) = RobotState::new(x.map(S::from_f64)) else { break };
+            let before = gamma(&controller, state.position());
+            let command = controller.tick(&state, dt);
+            let u = command.velocity.map(|v| v.to_f64());
+            assert!(u.norm() <= speed * (1.0 + 1e-5) + 1e-5, "seed {seed} tick {n}: {u} over {speed}");
+            x += u * tick;
+            tally.ticks += 1;
+            tally.guarded += u64::from(command.status.contains(Status::GUARDED));
+            let infeasible = command.status.contains(Status::INFEASIBLE);
+            tally.infeasible += u64::from(infeasible);
+            let after = gamma(&controller, &x.map(S::from_f64));
+            if after < S::one() {
+                tally.entered += 1;
+                assert!(infeasible, "seed {seed} tick {n}: Gamma {before} then {after} at {x}, {command:?}");
+            }
+            if kind.speed == 0.0 && command.status & (Status::EXTRAPOLATED | Status::HELD) == Status::empty() {
+                assert!(!infeasible, "seed {seed} tick {n}: infeasible at rest, Gamma {before} at {x}");
+            }
+        }
+    }
+    println!("{D}-D {kind:?}: {tally:?}");
+    assert!(tally.guarded > 0 && (kind.speed == 0.0 || tally.infeasible > 0), "nothing was tried: {tally:?}");
+    tally
+}
+
+const STILL: Kind = Kind { obstacles: 30, speed: 0.0, walls: true, scans: true };
+const MOVING: Kind = Kind { obstacles: 30, speed: 2.0, walls: true, scans: true };
+
+macro_rules! campaigns {
+    ($($name:ident: $scalar:ty, $d:literal, $kind:expr, $seed:literal;)+) => {
+        $(#[test] fn $name() { campaign::<$scalar, $d>($kind, $seed); })+
+    };
+}
+campaigns! {
+    still_2d_f64: f64, 2, STILL, 1;
+    still_3d_f64: f64, 3, STILL, 2;
+    still_2d_f32: f32, 2, STILL, 3;
+    still_3d_f32: f32, 3, STILL, 4;
+    still_2d_fixed: Fixed, 2, STILL, 5;
+    still_3d_fixed: Fixed, 3, STILL, 6;
+    moving_2d_f64: f64, 2, MOVING, 7;
+    moving_3d_f64: f64, 3, MOVING, 8;
+    moving_2d_f32: f32, 2, MOVING, 9;
+    moving_3d_f32: f32, 3, MOVING, 10;
+    moving_2d_fixed: Fixed, 2, MOVING, 11;
+    moving_3d_fixed: Fixed, 3, MOVING, 12;
+}

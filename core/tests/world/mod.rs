@@ -1,0 +1,206 @@
+//! Random worlds: every shape and motion, in any number type and dimension, from a seed.
+#![allow(dead_code, reason = "each test uses a part of it")]
+
+use pliant_core::shape::{MAX_VERTICES, Polygon};
+use pliant_core::{
+    Ageing, Component, Controller, LpvDs, Matrix, Motion, Obstacle, ObstacleSpec, RobotState, Scalar, Scan, Settings,
+    Shape, SteeringPolicy, Vector, rotation,
+};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+pub type Random = ChaCha8Rng;
+
+pub fn random(seed: u64) -> Random {
+    ChaCha8Rng::seed_from_u64(seed)
+}
+
+/// How many samples a campaign takes: PLIANT_SAMPLES, or this many.
+pub fn samples(default: u64) -> u64 {
+    std::env::var("PLIANT_SAMPLES").ok().and_then(|n| n.parse().ok()).unwrap_or(default)
+}
+
+pub fn vector<S: Scalar, const D: usize>(v: &[f64; 3]) -> Vector<S, D> {
+    Vector::from_fn(|i, _| S::from_f64(v[i]))
+}
+
+pub fn numbers<S: Scalar, const D: usize>(v: &Vector<S, D>) -> Vector<f64, D> {
+    v.map(|x| x.to_f64())
+}
+
+fn within(r: &mut Random, bound: f64) -> [f64; 3] {
+    [(); 3].map(|()| r.random_range(-bound..bound))
+}
+
+fn turn<S: Scalar, const D: usize>(r: &mut Random) -> Matrix<S, D> {
+    let [x, y, z] = if D == 2 { [0.0, 0.0, 1.0] } else { within(r, 1.0) };
+    let w = r.random_range(-1.0..1.0f64);
+    let length = (w * w + x * x + y * y + z * z).sqrt().max(0.1);
+    let q = rotation::spatial([w, x, y, z].map(|q| q / length)).unwrap_or_else(nalgebra::Matrix3::identity);
+    Matrix::from_fn(|i, j| S::from_f64(q[(i, j)]))
+}
+
+fn spin<S: Scalar, const D: usize>(r: &mut Random, most: f64) -> Matrix<S, D> {
+    let rate = most * r.random_range(0.0..1.0f64);
+    let w = if D == 2 { [0.0, 0.0, 1.0] } else { within(r, 0.57) };
+    let m = rotation::spatial_spin(&(nalgebra::Vector3::from(w) * rate));
+    Matrix::from_fn(|i, j| S::from_f64(m[(i, j)]))
+}
+
+pub fn shape<S: Scalar, const D: usize>(r: &mut Random, size: f64) -> Shape<S, D> {
+    let s = S::from_f64;
+    let length = |r: &mut Random| size * r.random_range(0.3..1.0f64);
+    let sides = [length(r), length(r), length(r)];
+    let least = sides[..D].iter().fold(f64::MAX, |m, x| m.min(*x));
+    let rounding = s(least * r.random_range(0.15..0.95f64));
+    match r.random_range(0..8u8) {
+        0..=2 => Shape::Ellipsoid { axes: vector(&sides), curvature: r.random_range(1..=3) },
+        3 => Shape::Ellipsoid { axes: vector(&sides), curvature: 1 },
+        4 => Shape::Box { half: vector(&sides), rounding },
+        5 if D == 3 => {
+            Shape::Cylinder { radius: s(sides[0]), half_length: s(sides[2]), rounding: s(sides[0].min(sides[2]) * 0.3) }
+        }
+        6 if D == 3 => Shape::Capsule { radius: s(sides[0]), half_length: s(sides[1]) },
+        _ if D == 2 => {
+            let n = r.random_range(4..=MAX_VERTICES);
+            let corners: Vec<[S; 2]> = (0..n)
+                .map(|i| {
+                    let angle = std::f64::consts::TAU * (i as f64) / n as f64;
+                    let radius = length(r);
+                    [s(radius * angle.cos()), s(radius * angle.sin())]
+                })
+                .collect();
+            Shape::Polygon(Polygon::new(&corners).unwrap())
+        }
+        _ => Shape::Box { half: vector(&sides), rounding },
+    }
+}
+
+/// What may be in a world.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// Most obstacles.
+    pub obstacles: usize,
+    /// m/s, and 2.5 times as many rad/s, and a tenth of it in growth.
+    pub speed: f64,
+    pub walls: bool,
+    pub scans: bool,
+}
+
+pub fn obstacle<S: Scalar, const D: usize>(r: &mut Random, kind: &Kind) -> Option<Obstacle<S, D>> {
+    let ones = [1.0; 3];
+    let moving = kind.speed > 0.0 && r.random_bool(0.7);
+    let fast = if moving { kind.speed } else { 1e-9 };
+    let ratio = if r.random_bool(0.5) { ones } else { [r.random_range(1.0..2.5f64); 3] };
+    let margin = if r.random_bool(0.6) { ones } else { [(); 3].map(|()| r.random_range(1.0..1.4f64)) };
+    let velocity: Vector<S, D> = vector(&within(r, fast / 1.75));
+    let shape = shape(r, 0.15);
+    let margin = if let Shape::Polygon(_) = shape { [margin[0]; 3] } else { margin };
+    let reference = vector(&[0.01, -0.005, 0.005].map(|x| if r.random_bool(0.3) { x } else { 0.0 }));
+    let growth = if r.random_bool(0.3) { r.random_range(-0.1..0.1f64) * fast } else { 0.0 };
+    let still = !moving;
+    let spec = ObstacleSpec {
+        center: vector(&within(r, 0.6)),
+        rotation: turn(r),
+        shape,
+        wall: false,
+        soft_ratio: vector(&ratio),
+        margin: vector(&margin),
+        reference,
+        velocity: if still { Vector::zeros() } else { velocity },
+        spin: if still { Matrix::zeros() } else { spin(r, fast * 2.5) },
+        growth: if still { S::zero() } else { S::from_f64(growth) },
+    };
+    Obstacle::new(spec).ok()
+}
+
+fn wall<S: Scalar, const D: usize>(r: &mut Random) -> Obstacle<S, D> {
+    let half = Vector::<S, D>::from_fn(|_, _| S::from_f64(r.random_range(0.7..1.0f64)));
+    let shape = match r.random_range(0..3u8) {
+        0 => Shape::ellipsoid(half),
+        1 => Shape::Ellipsoid { axes: half, curvature: 3 },
+        _ => Shape::Box { half, rounding: S::from_f64(0.2) },
+    };
+    Obstacle::new(ObstacleSpec { shape, wall: true, rotation: turn(r), ..ObstacleSpec::default() }).unwrap()
+}
+
+/// A stable motion: straight, or of some components by construction (A = -(rate I) + skew, so P = I proves it).
+pub fn motion<S: Scalar, const D: usize>(r: &mut Random) -> Motion<S, D> {
+    let attractor = vector(&within(r, 0.4));
+    if r.random_bool(0.4) {
+        return Motion::linear(attractor, S::from_f64(r.random_range(0.2..5.0f64))).unwrap();
+    }
+    let components: Vec<Component<S, D>> = (0..r.random_range(1..=8))
+        .map(|_| {
+            let skew = spin::<S, D>(r, 2.0);
+            let rate = r.random_range(0.5..3.0f64);
+            Component {
+                log_weight: S::from_f64(r.random_range(-1.0..1.0f64)),
+                mean: vector(&within(r, 0.5)),
+                whitening: Matrix::identity() * S::from_f64(r.random_range(3.0..30.0f64)),
+                a: skew - Matrix::identity() * S::from_f64(rate),
+            }
+        })
+        .collect();
+    Motion::Lpv(LpvDs::new(attractor, Matrix::identity(), &components).unwrap().certify().unwrap())
+}
+
+pub fn settings<S: Scalar>(r: &mut Random) -> Settings<S> {
+    let steering = if r.random_bool(0.7) {
+        SteeringPolicy::WithFlow { beta: S::one() }
+    } else {
+        SteeringPolicy::fixed(S::from_f64(r.random_range(-3.0..3.0f64)))
+    };
+    let forever = S::from_f64(3600.0);
+    let ageing = if r.random_bool(0.8) {
+        Ageing { time_to_live: forever, growth: S::from_f64(0.02), hold: forever }
+    } else {
+        Ageing { time_to_live: S::from_f64(0.02), ..Ageing::default() }
+    };
+    let mut settings =
+        Settings { steering, ageing, gain: S::from_f64(r.random_range(0.0..0.2f64)), ..Settings::default() };
+    settings.limits.speed = S::from_f64(r.random_range(0.1..2.0f64));
+    if r.random_bool(0.3) {
+        settings.limits.acceleration = Some(S::from_f64(r.random_range(0.5..20.0f64)));
+    }
+    settings
+}
+
+pub struct World<S: Scalar, const D: usize> {
+    pub controller: Controller<S, D, 32>,
+    pub start: Vector<f64, D>,
+}
+
+/// A controller among obstacles, and a start outside of all cores if one was found.
+pub fn world<S: Scalar, const D: usize>(seed: u64, kind: &Kind) -> Option<World<S, D>> {
+    let r = &mut random(seed);
+    let mut controller: Controller<S, D, 32> = Controller::new(motion(r), settings(r));
+    if kind.walls && r.random_bool(0.25) {
+        controller.upsert(1000, wall(r), S::zero()).unwrap();
+    }
+    for id in 0..r.random_range(1..=kind.obstacles) {
+        if let Some(o) = obstacle(r, kind) {
+            controller.upsert(id as u16, o, S::zero()).unwrap();
+        }
+    }
+    if kind.scans && r.random_bool(0.25) {
+        let (from, to) = (within(r, 0.6), within(r, 0.6));
+        let n = r.random_range(1..100);
+        let at = |i: usize, t: f64| from[i] + (to[i] - from[i]) * t;
+        let points: Vec<Vector<S, D>> =
+            (0..n).map(|i| Vector::from_fn(|j, _| S::from_f64(at(j, f64::from(i) / f64::from(n))))).collect();
+        controller.set_scan(Scan::new(&points, S::from_f64(0.02)).unwrap(), S::zero());
+    }
+    (0..200).find_map(|_| {
+        let start = Vector::<f64, D>::from_fn(|_, _| r.random_range(-0.7..0.7f64));
+        let state = RobotState::new(start.map(S::from_f64)).unwrap();
+        (gamma(&controller, state.position()) > S::from_f64(1.000_1)).then_some(())?;
+        Some(World { controller: controller.clone(), start })
+    })
+}
+
+/// The least Gamma of all that is in the table now.
+pub fn gamma<S: Scalar, const D: usize, const CAP: usize>(controller: &Controller<S, D, CAP>, x: &Vector<S, D>) -> S {
+    let table = controller.table();
+    table.iter().map(|e| e.obstacle().gamma(x)).fold(table.scan().gamma(x), |m, g| if g < m { g } else { m })
+}
