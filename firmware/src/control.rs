@@ -1,9 +1,9 @@
 //! The half that faces the clock: modes, watchdogs and the tick.
 
 use pliant_core::Settings;
-use pliant_protocol::message::{self, DeviceError, Mode, StopReason, TickMode, ToHost};
+use pliant_protocol::message::{self, DeviceError, Field, Mode, StopReason, TickMode, ToHost};
 
-use crate::space::{AnyMotion, AnyObstacle, AnyState, Flat, OtherDimension, Space};
+use crate::space::{AnyMotion, AnyObstacle, AnyScan, AnyState, AnyTarget, Flat, OtherDimension, Space};
 use crate::{TICK, TICK_HZ};
 
 /// Ticks (ms) without a fresh robot state after which the command ramps to zero.
@@ -174,7 +174,7 @@ impl Control {
             }
             Some(_) if busy => Err(DeviceError::Mode(self.mode)),
             _ => {
-                self.space = Some(Space::new(motion, self.settings));
+                Space::place(&mut self.space, motion, self.settings);
                 self.latest = None;
                 Ok(())
             }
@@ -182,14 +182,29 @@ impl Control {
     }
 
     pub(crate) fn upsert(&mut self, id: u16, obstacle: AnyObstacle, stamp: u64) -> Result<(), DeviceError> {
-        if self.clock.is_none() {
-            self.clock = Some(Reading { stamp, tick: self.tick });
-        }
         let age = self.age(stamp);
         let space = self.space.as_mut().ok_or(DeviceError::NoModel)?;
         match space.upsert(id, obstacle, age) {
             Ok(Ok(())) => Ok(()),
             Ok(Err(pliant_core::TableFull)) => Err(DeviceError::TableFull),
+            Err(OtherDimension) => Err(DeviceError::Dimension),
+        }
+    }
+
+    /// Puts a scan in the place of the one before.
+    pub(crate) fn set_scan(&mut self, scan: AnyScan, stamp: u64) -> Result<(), DeviceError> {
+        let age = self.age(stamp);
+        let space = self.space.as_mut().ok_or(DeviceError::NoModel)?;
+        space.set_scan(scan, age).map_err(|OtherDimension| DeviceError::Dimension)
+    }
+
+    /// Moves the attractor; refused where it has left the range since it was seen.
+    pub(crate) fn aim(&mut self, target: &AnyTarget, stamp: u64) -> Result<(), DeviceError> {
+        let age = self.age(stamp);
+        let space = self.space.as_mut().ok_or(DeviceError::NoModel)?;
+        match space.aim(target, age) {
+            Ok(true) => Ok(()),
+            Ok(false) => Err(DeviceError::OutOfRange(Field::Attractor)),
             Err(OtherDimension) => Err(DeviceError::Dimension),
         }
     }
@@ -264,11 +279,10 @@ impl Control {
         }
     }
 
-    /// Seconds since `stamp`, host's clock, in us: by the newest reading of it and the ticks since then.
-    fn age(&self, stamp: u64) -> f32 {
-        let Some(clock) = &self.clock else {
-            return 0.0;
-        };
+    /// Seconds since `stamp`, host's clock, in us: by the newest reading of it and the ticks since then. Where there is none, this is the
+    /// first.
+    fn age(&mut self, stamp: u64) -> f32 {
+        let clock = self.clock.get_or_insert(Reading { stamp, tick: self.tick });
         let since = u64::from(self.tick.wrapping_sub(clock.tick)) * (1_000_000 / u64::from(TICK_HZ));
         let age = clock.stamp.saturating_add(since).saturating_sub(stamp);
         // A microsecond count this small is exact in f32; the table knows what to do with what is older than its hold time.

@@ -3,7 +3,8 @@
 use pliant_protocol::message::{self, DeviceError, StopReason, ToDevice, ToHost};
 use pliant_protocol::{Arrival, FRAME_MAX, Frame, FrameError, SCHEMA, Sequence, convert, decode, encode};
 
-use crate::space::{AnyMotion, AnyObstacle, AnyState, InSpace};
+use crate::scan::{Collecting, Piece};
+use crate::space::{AnyMotion, AnyObstacle, AnyScan, AnyState, AnyTarget, InSpace};
 use crate::upload::Upload;
 use crate::{Control, OBSTACLES, TICK_HZ};
 
@@ -56,6 +57,7 @@ pub struct Desk<P> {
     upload: Upload,
     /// The last upload was committed, so that a commit sent again because its answer was lost is answered alike.
     committed: bool,
+    scan: Collecting,
     dimension: Option<Dimension>,
     arrivals: Sequence,
     departures: u16,
@@ -77,6 +79,7 @@ impl<P: Copy + PartialEq> Desk<P> {
             host: None,
             upload: Upload::new(),
             committed: false,
+            scan: Collecting::new(),
             dimension: None,
             arrivals: Sequence::new(),
             departures: 0,
@@ -235,6 +238,16 @@ impl<P: Copy + PartialEq> Desk<P> {
                 self.committed = true;
                 Ok(answer)
             }
+            ToDevice::Scan { stamp, start, total, radius, points } => {
+                let piece = Piece { stamp, start, total, radius, points: &points };
+                let mut scan = self.scan(&piece)?;
+                // Nothing to do for a piece that does not complete its scan.
+                act(&mut |c| scan.take().map_or(Ok(()), |s| c.set_scan(s, stamp)))
+            }
+            ToDevice::Aim { stamp, position, velocity } => {
+                let target = self.target(&position, &velocity)?;
+                act(&mut |c| c.aim(&target, stamp))
+            }
             ToDevice::Statistics => Ok(Some(ToHost::Statistics(self.statistics(control)))),
             // Answered before the sequence was looked at.
             ToDevice::Hello { .. } | ToDevice::Stop => Ok(None),
@@ -253,6 +266,23 @@ impl<P: Copy + PartialEq> Desk<P> {
         match self.dimension {
             Some(InSpace::Planar(())) => Ok(AnyObstacle::Planar(convert::obstacle::<2>(obstacle)?)),
             Some(InSpace::Spatial(())) => Ok(AnyObstacle::Spatial(convert::obstacle::<3>(obstacle)?)),
+            None => Err(DeviceError::NoModel),
+        }
+    }
+
+    fn target(&self, position: &[f32; 3], velocity: &[f32; 3]) -> Result<AnyTarget, DeviceError> {
+        match self.dimension {
+            Some(InSpace::Planar(())) => Ok(AnyTarget::Planar(convert::target::<2>(position, velocity)?)),
+            Some(InSpace::Spatial(())) => Ok(AnyTarget::Spatial(convert::target::<3>(position, velocity)?)),
+            None => Err(DeviceError::NoModel),
+        }
+    }
+
+    /// The whole scan, if this piece completes it.
+    fn scan(&mut self, piece: &Piece) -> Result<Option<AnyScan>, DeviceError> {
+        match self.dimension {
+            Some(InSpace::Planar(())) => Ok(self.scan.take::<2>(piece)?.map(AnyScan::Planar)),
+            Some(InSpace::Spatial(())) => Ok(self.scan.take::<3>(piece)?.map(AnyScan::Spatial)),
             None => Err(DeviceError::NoModel),
         }
     }

@@ -5,6 +5,7 @@
 mod control;
 mod desk;
 mod device;
+mod scan;
 mod space;
 mod upload;
 

@@ -1,6 +1,7 @@
 //! Planar or spatial: a device runs either, as its skill has it.
 
-use pliant_core::{Command, Controller, Motion, Obstacle, RobotState, Settings, TableFull};
+use pliant_core::{Command, Controller, Motion, Obstacle, RobotState, Scan, Settings, TableFull};
+use pliant_protocol::convert::Target;
 
 use crate::OBSTACLES;
 
@@ -17,6 +18,8 @@ pub enum InSpace<P, S> {
 pub type Space = InSpace<Controller<f32, 2, OBSTACLES>, Controller<f32, 3, OBSTACLES>>;
 pub(crate) type AnyMotion = InSpace<Motion<f32, 2>, Motion<f32, 3>>;
 pub(crate) type AnyObstacle = InSpace<Obstacle<f32, 2>, Obstacle<f32, 3>>;
+pub(crate) type AnyScan = InSpace<Scan<f32, 2>, Scan<f32, 3>>;
+pub(crate) type AnyTarget = InSpace<Target<2>, Target<3>>;
 pub(crate) type AnyState = InSpace<RobotState<f32, 2>, RobotState<f32, 3>>;
 
 /// What was given is of the other dimension.
@@ -36,10 +39,11 @@ impl<P, S> InSpace<P, S> {
 }
 
 impl Space {
-    pub(crate) fn new(motion: AnyMotion, settings: Settings<f32>) -> Self {
+    /// Puts a controller with this motion, and nothing else yet, where `room` is.
+    pub(crate) fn place(room: &mut Option<Self>, motion: AnyMotion, settings: Settings<f32>) {
         match motion {
-            InSpace::Planar(m) => Self::Planar(Controller::new(m, settings)),
-            InSpace::Spatial(m) => Self::Spatial(Controller::new(m, settings)),
+            InSpace::Planar(m) => place_planar(room, m, settings),
+            InSpace::Spatial(m) => place_spatial(room, m, settings),
         }
     }
 
@@ -76,6 +80,24 @@ impl Space {
         match (self, obstacle) {
             (Self::Planar(c), InSpace::Planar(o)) => Ok(c.upsert(id, o, age)),
             (Self::Spatial(c), InSpace::Spatial(o)) => Ok(c.upsert(id, o, age)),
+            _ => Err(OtherDimension),
+        }
+    }
+
+    pub(crate) fn set_scan(&mut self, scan: AnyScan, age: f32) -> Result<(), OtherDimension> {
+        match (self, scan) {
+            (Self::Planar(c), InSpace::Planar(s)) => c.set_scan(s, age),
+            (Self::Spatial(c), InSpace::Spatial(s)) => c.set_scan(s, age),
+            _ => return Err(OtherDimension),
+        }
+        Ok(())
+    }
+
+    /// Moves the attractor to where it is `age` seconds later; is that in range?
+    pub(crate) fn aim(&mut self, target: &AnyTarget, age: f32) -> Result<bool, OtherDimension> {
+        match (self, target) {
+            (Self::Planar(c), InSpace::Planar(t)) => Ok(c.aim(&t.after(age), t.velocity())),
+            (Self::Spatial(c), InSpace::Spatial(t)) => Ok(c.aim(&t.after(age), t.velocity())),
             _ => Err(OtherDimension),
         }
     }
@@ -126,4 +148,17 @@ impl Space {
             _ => Err(OtherDimension),
         }
     }
+}
+
+// A controller is tens of kilobytes, and is on the stack once before it is where it belongs. In one function there would be stack for one
+// of each dimension at the same time.
+
+#[inline(never)]
+fn place_planar(room: &mut Option<Space>, motion: Motion<f32, 2>, settings: Settings<f32>) {
+    *room = Some(Space::Planar(Controller::new(motion, settings)));
+}
+
+#[inline(never)]
+fn place_spatial(room: &mut Option<Space>, motion: Motion<f32, 3>, settings: Settings<f32>) {
+    *room = Some(Space::Spatial(Controller::new(motion, settings)));
 }

@@ -5,7 +5,7 @@
 use libfuzzer_sys::fuzz_target;
 use pliant_core::{Controller, Motion, RobotState, Settings, Vector};
 use pliant_protocol::ToDevice;
-use pliant_protocol::convert::{obstacle, settings, state};
+use pliant_protocol::convert::{obstacle, scan, settings, state, target};
 use pliant_protocol_fuzz::understood;
 
 const ATTRACTOR: f32 = 0.1;
@@ -21,18 +21,32 @@ fn drive<const D: usize>(message: &ToDevice) {
         ToDevice::Upsert { id, obstacle: wire, .. } => {
             let Ok(obstacle) = obstacle::<D>(wire) else { return };
             let spec = obstacle.spec();
-            // At the middle, at the end of each semi-axis, and a little off both.
+            // At the middle, on both surfaces along each axis, and a little off.
             positions.push(spec.center);
             positions.push(obstacle.reference());
             for i in 0..D {
-                let arm = spec.rotation.column(i) * spec.axes[i];
-                positions.extend([1.0, spec.margin[i], spec.soft_ratio[i], 1.5].map(|s| spec.center + arm * s));
+                let axis: Vector<f32, D> = spec.rotation.column(i).into();
+                for surface in [obstacle.surface(&axis), obstacle.soft_surface(&-axis)] {
+                    positions.extend([0.99, 1.0, 1.5].map(|s| spec.center + (surface - spec.center) * s));
+                }
             }
             controller.upsert(*id, obstacle, 0.05).expect("there is room");
         }
         ToDevice::Configure(wire) => {
             let Ok(settings) = settings(wire) else { return };
             controller.set_settings(settings);
+        }
+        ToDevice::Scan { radius, points, .. } => {
+            let Ok(scan) = scan::<D>(points, *radius) else { return };
+            for point in scan.points() {
+                positions.extend([0.0, *radius, 2.0 * radius].map(|r| point.add_scalar(r)));
+            }
+            controller.set_scan(scan, 0.05);
+        }
+        ToDevice::Aim { position, velocity, .. } => {
+            let Ok(target) = target::<D>(position, velocity) else { return };
+            positions.push(*target.position());
+            controller.aim(&target.after(0.05), target.velocity());
         }
         ToDevice::State { position, .. } => {
             let Ok(state) = state::<D>(position) else { return };

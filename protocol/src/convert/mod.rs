@@ -8,11 +8,15 @@
 
 mod motion;
 mod obstacle;
+mod scan;
 mod settings;
+mod target;
 
 pub use motion::motion;
 pub use obstacle::obstacle;
+pub use scan::scan;
 pub use settings::settings;
+pub use target::{Target, target};
 
 use crate::message::{self, DeviceError, Field};
 use pliant_core::{Matrix, Region, RobotState, Scalar, Vector};

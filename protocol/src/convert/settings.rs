@@ -3,7 +3,7 @@
 use super::{finite, round};
 use crate::message::{DeviceError, Field, Settings, Steering};
 use pliant_core::controller::SettingsError;
-use pliant_core::{Ageing, Limits, Scalar, SteeringPolicy};
+use pliant_core::{Ageing, Guard, Limits, Scalar, SteeringPolicy};
 
 /// Settings that were checked, from a [`ToDevice::Configure`](crate::ToDevice::Configure).
 ///
@@ -29,6 +29,7 @@ pub fn settings(wire: &Settings) -> Result<pliant_core::Settings<f32>, DeviceErr
     finite(wire.acceleration.as_slice(), Field::Acceleration)?;
     finite(&[wire.deceleration], Field::Deceleration)?;
     finite(&[wire.time_to_live, wire.growth, wire.hold], Field::Ageing)?;
+    finite(wire.guard.as_slice(), Field::Guard)?;
     let settings = pliant_core::Settings {
         deformable: wire.deformable,
         gain: wire.gain,
@@ -38,6 +39,7 @@ pub fn settings(wire: &Settings) -> Result<pliant_core::Settings<f32>, DeviceErr
         },
         limits: Limits { speed: wire.speed, acceleration: wire.acceleration, deceleration: wire.deceleration },
         ageing: Ageing { time_to_live: wire.time_to_live, growth: wire.growth, hold: wire.hold },
+        guard: wire.guard.map(|approach| Guard { approach }),
     };
     settings.check().map_err(|error| DeviceError::OutOfRange(error.into()))?;
     Ok(settings)
@@ -52,6 +54,7 @@ impl From<SettingsError> for Field {
             SettingsError::Acceleration => Self::Acceleration,
             SettingsError::Deceleration => Self::Deceleration,
             SettingsError::Ageing => Self::Ageing,
+            SettingsError::Guard => Self::Guard,
         }
     }
 }
@@ -72,6 +75,7 @@ impl<S: Scalar> From<&pliant_core::Settings<S>> for Settings {
             time_to_live: round(ageing.time_to_live),
             growth: round(ageing.growth),
             hold: round(ageing.hold),
+            guard: core.guard.as_ref().map(|guard| round(guard.approach)),
         }
     }
 }

@@ -46,6 +46,8 @@ pub enum DeviceError {
     },
     /// The device serves another host, or has restarted since it served this one: say hello.
     NotGreeted,
+    /// A piece of a scan is not the one that was expected.
+    Scan(ScanFault),
 }
 
 /// Why a whole frame cannot be read. A damaged one is counted and not answered: its sender is unknown.
@@ -79,6 +81,21 @@ pub enum UploadError {
     Malformed,
 }
 
+/// Why a piece of a scan is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum ScanFault {
+    /// It does not begin where the last one ended, or is of a scan that was not begun.
+    Gap {
+        /// The start that was expected: 0 where the scan was not begun.
+        expected: u16,
+    },
+    /// It has another total than the pieces before, or goes beyond it.
+    Total {
+        /// The total that was expected.
+        expected: u16,
+    },
+}
+
 /// The part of a message that is at fault.
 ///
 /// It is shown by the name it has in a scene or model file.
@@ -88,11 +105,11 @@ pub enum Field {
     Center,
     /// Its rotation.
     Rotation,
-    /// Its hard semi-axes.
+    /// Its lengths: semi-axes, half sides, radius or half length.
     Axes,
     /// Its curvature exponent.
     Curvature,
-    /// Its soft semi-axes as multiples of the hard ones.
+    /// Its soft surface as multiples of the hard one.
     SoftRatio,
     /// Its safety factors.
     Margin,
@@ -132,6 +149,20 @@ pub enum Field {
     Whitening,
     /// Linear system of a component.
     Matrix,
+    /// Radius of an obstacle's edges or rims.
+    Rounding,
+    /// Corners of a polygon.
+    Vertices,
+    /// How fast an obstacle grows.
+    Growth,
+    /// The share of a distance that the guard lets a sample use up.
+    Guard,
+    /// Points of a scan, or how many there are.
+    Points,
+    /// Radius of a scan's points.
+    Radius,
+    /// Velocity of the attractor.
+    AttractorVelocity,
 }
 
 impl DeviceError {
@@ -189,6 +220,13 @@ impl Field {
             Self::Mean => "mean",
             Self::Whitening => "covariance",
             Self::Matrix => "a",
+            Self::Rounding => "rounding",
+            Self::Vertices => "polygon",
+            Self::Growth => "growth",
+            Self::Guard => "approach",
+            Self::Points => "points",
+            Self::Radius => "radius",
+            Self::AttractorVelocity => "velocity",
         }
     }
 }
@@ -214,6 +252,7 @@ impl Display for DeviceError {
             Self::UnknownObstacle => f.write_str("the device has no obstacle of this number"),
             Self::NoModel => f.write_str("the device has no model to run: upload one"),
             Self::Upload(error) => error.fmt(f),
+            Self::Scan(fault) => fault.fmt(f),
             Self::NotGreeted => f.write_str("the device has restarted, or serves another host: say hello first"),
             Self::Certificate { component: None } => {
                 f.write_str("the Lyapunov matrix is not symmetric and positive definite")
@@ -235,6 +274,17 @@ impl Display for FrameFault {
     }
 }
 
+impl Display for ScanFault {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        match self {
+            Self::Gap { expected } => {
+                write!(f, "a piece of the scan is missing: the one from point {expected} was expected")
+            }
+            Self::Total { expected } => write!(f, "a piece that does not go with a scan of {expected} points in all"),
+        }
+    }
+}
+
 impl Display for UploadError {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         f.write_str(match self {
@@ -250,4 +300,5 @@ impl Display for UploadError {
 
 impl core::error::Error for DeviceError {}
 impl core::error::Error for FrameFault {}
+impl core::error::Error for ScanFault {}
 impl core::error::Error for UploadError {}

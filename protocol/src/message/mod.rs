@@ -4,9 +4,11 @@
 //! [`SCHEMA`], which both sides compare in their hello.
 
 mod error;
+mod obstacle;
 mod state;
 
-pub use error::{DeviceError, Field, FrameFault, UploadError};
+pub use error::{DeviceError, Field, FrameFault, ScanFault, UploadError};
+pub use obstacle::{Obstacle, Shape, VERTICES_MAX};
 pub use state::{Mode, Region, Statistics, StopReason};
 
 use crate::model::Model;
@@ -24,6 +26,10 @@ const fn key<T: Schema>(path: &str) -> u64 {
 
 /// Most bytes of a model in one [`ToDevice::UploadChunk`].
 pub const CHUNK_MAX: usize = 192;
+/// Most points in one [`ToDevice::Scan`].
+pub const PIECE_MAX: usize = 16;
+/// Most points of a whole scan.
+pub const SCAN_MAX: usize = pliant_core::scan::MAX_POINTS;
 /// Most bytes in the name of a board.
 pub const BOARD_MAX: usize = 16;
 
@@ -83,7 +89,7 @@ pub enum ToDevice {
         /// The host's number for it.
         id: u16,
     },
-    /// Takes every obstacle out of the table.
+    /// Takes every obstacle out of the table, and the scan.
     Clear,
     /// Where the robot is. A [`ToHost::Command`] follows: with the next tick, or at once where states make the ticks. A
     /// bad state is answered by [`ToHost::Refused`].
@@ -102,6 +108,29 @@ pub enum ToDevice {
     Stop,
     /// Asks for [`ToHost::Statistics`].
     Statistics,
+    /// A piece of a scan. Pieces come in order from `start` 0, and the one that completes the total puts the whole scan in
+    /// the place of the one before. Until then, and after a piece that was refused, the scan before is kept.
+    Scan {
+        /// When the scan was taken, in microseconds of the host's clock; its age counts from then.
+        stamp: u64,
+        /// How many points of this scan came before.
+        start: u16,
+        /// How many points it has in all, at most [`SCAN_MAX`]; 0 takes the scan away.
+        total: u16,
+        /// What each point is kept away from by, in m.
+        radius: f32,
+        /// The piece: points, in m.
+        points: Vec<[f32; 3], PIECE_MAX>,
+    },
+    /// Moves the attractor of the running model, until the next [`Aim`](Self::Aim) or another model.
+    Aim {
+        /// When the attractor was there, in microseconds of the host's clock; it is carried on from then.
+        stamp: u64,
+        /// Where it was then, in m.
+        position: [f32; 3],
+        /// Its velocity, in m/s.
+        velocity: [f32; 3],
+    },
 }
 
 /// A message from the device.
@@ -217,6 +246,9 @@ pub struct Settings {
     pub growth: f32,
     /// Age from which it stays where it is and is flagged, in s.
     pub hold: f32,
+    /// Keeps every sample out of every hard core: the share of the distance to one that a sample may use up (dimensionless,
+    /// above 0, at most 1). None leaves it to the modulation.
+    pub guard: Option<f32>,
 }
 
 /// Where the push in a soft layer points.
@@ -232,39 +264,4 @@ pub enum Steering {
         /// Most that the push may be, as a multiple of the nominal speed (dimensionless).
         beta: f32,
     },
-}
-
-/// An ellipsoid with a hard core and perhaps a soft layer.
-///
-/// In two dimensions it lies in the plane: see [`convert::obstacle`](crate::convert::obstacle()).
-///
-/// The default is that of `pliant_core`: a rigid ball of 5 cm radius at the origin, at rest.
-///
-/// ```
-/// use pliant_protocol::message::Obstacle;
-///
-/// // A hard core of 4 cm in a layer of foam that is 2 cm thick.
-/// let foam = Obstacle { axes: [0.04; 3], soft_ratio: [1.5; 3], ..Obstacle::default() };
-/// # assert_eq!(foam.rotation, [1.0, 0.0, 0.0, 0.0]);
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
-pub struct Obstacle {
-    /// Centre, in m.
-    pub center: [f32; 3],
-    /// Rotation from the obstacle's frame to the world's: a unit quaternion w, x, y, z.
-    pub rotation: [f32; 4],
-    /// Hard semi-axes, in m.
-    pub axes: [f32; 3],
-    /// Soft semi-axes as multiples of the hard ones (dimensionless, at least 1; 1 is rigid).
-    pub soft_ratio: [f32; 3],
-    /// Safety factors on the hard semi-axes (dimensionless, at least 1).
-    pub margin: [f32; 3],
-    /// Curvature exponent p: 1 an ellipsoid, larger ever more of a box (dimensionless).
-    pub curvature: u8,
-    /// Reference point in the obstacle's frame, inside the core, in m.
-    pub reference: [f32; 3],
-    /// Velocity of the centre, in m/s.
-    pub velocity: [f32; 3],
-    /// Angular velocity in the world's frame, in rad/s.
-    pub angular_velocity: [f32; 3],
 }

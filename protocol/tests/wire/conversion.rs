@@ -1,9 +1,9 @@
-//! From messages to the method's types and back: what is sound passes unchanged, and each fault is named.
+//! Settings, skills, scans and attractors from messages to the method's types and back: what is sound passes unchanged,
+//! and each fault is named.
 
-use pliant_core::obstacle::ObstacleError;
-use pliant_core::{Component, LpvDs, Matrix, Motion, ObstacleSpec, SteeringPolicy, Vector, rotation};
+use pliant_core::{Component, LpvDs, Matrix, Motion, SteeringPolicy, Vector};
 use pliant_protocol::convert::{self, padded};
-use pliant_protocol::message::{DeviceError, Field, Obstacle, Settings, Steering};
+use pliant_protocol::message::{DeviceError, Field, SCAN_MAX, Settings, Steering};
 use pliant_protocol::model::{self, Model};
 use proptest::prelude::*;
 
@@ -11,112 +11,12 @@ use crate::generate;
 
 const NAN: f32 = f32::NAN;
 
-/// A sound obstacle of two dimensions, and so of three.
-fn planar() -> Obstacle {
-    Obstacle {
-        center: [0.2, 0.21, 0.0],
-        rotation: [0.8, 0.0, 0.0, 0.6],
-        axes: [0.04, 0.05, 0.0],
-        soft_ratio: [1.5, 1.25, 0.0],
-        margin: [1.1, 1.2, 0.0],
-        curvature: 2,
-        reference: [0.01, -0.02, 0.0],
-        velocity: [-0.1, 0.2, 0.0],
-        angular_velocity: [0.0, 0.0, 0.5],
-    }
-}
-
-fn spatial() -> Obstacle {
-    Obstacle {
-        center: [0.2, 0.21, 0.22],
-        rotation: [0.5, -0.5, 0.5, -0.5],
-        axes: [0.04, 0.05, 0.06],
-        soft_ratio: [1.5, 1.25, 1.125],
-        margin: [1.1, 1.2, 1.3],
-        reference: [0.01, -0.02, 0.03],
-        velocity: [-0.1, 0.2, -0.3],
-        angular_velocity: [0.7, 0.8, 0.9],
-        ..planar()
-    }
-}
-
-#[test]
-fn an_obstacle_is_what_the_message_says() {
-    let got = convert::obstacle::<2>(&planar()).unwrap();
-    let spec = got.spec();
-    assert_eq!(padded(&spec.center), [0.2, 0.21, 0.0]);
-    assert_eq!(padded(&spec.axes), [0.04, 0.05, 0.0]);
-    assert_eq!(padded(&spec.soft_ratio), [1.5, 1.25, 0.0]);
-    assert_eq!(padded(&spec.margin), [1.1, 1.2, 0.0]);
-    assert_eq!(padded(&spec.reference), [0.01, -0.02, 0.0]);
-    assert_eq!(padded(&spec.velocity), [-0.1, 0.2, 0.0]);
-    assert_eq!(spec.curvature, 2);
-    assert_eq!(spec.spin, rotation::planar_spin(0.5));
-    let angle = 2.0 * 0.6_f32.atan2(0.8);
-    assert!((spec.rotation - rotation::planar(angle)).amax() < 1e-6, "{}", spec.rotation);
-
-    let got = convert::obstacle::<3>(&spatial()).unwrap();
-    let spec = got.spec();
-    // The quaternion (1 - i + j - k)/2 takes x to -y, y to -z and z to x.
-    let expected = Matrix::<f32, 3>::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
-    assert!((spec.rotation - expected).amax() < 1e-6, "{}", spec.rotation);
-    let arm = Vector::<f32, 3>::new(1.0, 2.0, 3.0);
-    assert!((spec.spin * arm - Vector::<f32, 3>::new(0.7, 0.8, 0.9).cross(&arm)).amax() < 1e-6);
-}
-
-#[test]
-fn each_fault_of_an_obstacle_is_named() {
-    let ok = spatial();
-    let not_finite = [
-        (Obstacle { center: [0.0, 0.0, NAN], ..ok }, Field::Center),
-        (Obstacle { rotation: [1.0, 0.0, f32::INFINITY, 0.0], ..ok }, Field::Rotation),
-        (Obstacle { axes: [NAN, 0.1, 0.1], ..ok }, Field::Axes),
-        (Obstacle { soft_ratio: [1.0, NAN, 1.0], ..ok }, Field::SoftRatio),
-        (Obstacle { margin: [1.0, 1.0, f32::NEG_INFINITY], ..ok }, Field::Margin),
-        (Obstacle { reference: [NAN; 3], ..ok }, Field::Reference),
-        (Obstacle { velocity: [NAN; 3], ..ok }, Field::Velocity),
-        (Obstacle { angular_velocity: [NAN; 3], ..ok }, Field::AngularVelocity),
-    ];
-    for (bad, field) in not_finite {
-        assert_eq!(convert::obstacle::<3>(&bad).unwrap_err(), DeviceError::NotFinite(field));
-        assert_eq!(convert::obstacle::<2>(&bad).unwrap_err(), DeviceError::NotFinite(field));
-    }
-    let out_of_range = [
-        (Obstacle { center: [0.0, 0.0, 1000.5], ..ok }, Field::Center),
-        (Obstacle { rotation: [0.5, 0.5, 0.5, 0.6], ..ok }, Field::Rotation),
-        (Obstacle { rotation: [0.0; 4], ..ok }, Field::Rotation),
-        (Obstacle { axes: [0.04, 0.05, 0.0], ..ok }, Field::Axes),
-        (Obstacle { soft_ratio: [1.0, 1.0, 0.99], ..ok }, Field::SoftRatio),
-        (Obstacle { margin: [1.0, 0.99, 1.0], ..ok }, Field::Margin),
-        (Obstacle { curvature: 0, ..ok }, Field::Curvature),
-        (Obstacle { curvature: 9, ..ok }, Field::Curvature),
-        (Obstacle { reference: [0.05, 0.0, 0.0], ..ok }, Field::Reference),
-        (Obstacle { velocity: [0.0, 101.0, 0.0], ..ok }, Field::Velocity),
-        (Obstacle { angular_velocity: [-101.0, 0.0, 0.0], ..ok }, Field::AngularVelocity),
-    ];
-    for (bad, field) in out_of_range {
-        assert_eq!(convert::obstacle::<3>(&bad).unwrap_err(), DeviceError::OutOfRange(field));
-    }
-    let not_planar = [
-        Obstacle { center: [0.0, 0.0, 0.1], ..planar() },
-        Obstacle { rotation: [0.8, 0.6, 0.0, 0.0], ..planar() },
-        Obstacle { rotation: [0.8, 0.0, 0.6, 0.0], ..planar() },
-        Obstacle { reference: [0.0, 0.0, 0.01], ..planar() },
-        Obstacle { velocity: [0.0, 0.0, 0.1], ..planar() },
-        Obstacle { angular_velocity: [0.1, 0.0, 0.0], ..planar() },
-        Obstacle { angular_velocity: [0.0, 0.1, 0.0], ..planar() },
-    ];
-    for bad in not_planar {
-        assert_eq!(convert::obstacle::<2>(&bad).unwrap_err(), DeviceError::Dimension, "{bad:?}");
-    }
-}
-
 #[test]
 fn each_fault_of_settings_is_named() {
     let ok = Settings { acceleration: Some(2.0), ..Settings::default() };
     assert!(convert::settings(&ok).is_ok());
     type Set = fn(&mut Settings, f32);
-    let fields: [(Set, f32, Field); 9] = [
+    let fields: [(Set, f32, Field); 11] = [
         (|s, x| s.gain = x, -0.1, Field::Gain),
         (|s, x| s.steering = Steering::WithFlow { beta: x }, -0.1, Field::Steering),
         (|s, x| s.speed = x, 0.0, Field::Speed),
@@ -126,6 +26,8 @@ fn each_fault_of_settings_is_named() {
         (|s, x| s.growth = x, -0.1, Field::Ageing),
         (|s, x| s.hold = x, 0.1, Field::Ageing), // less than the time to live
         (|s, x| s.hold = x, 3601.0, Field::Ageing),
+        (|s, x| s.guard = Some(x), 0.0, Field::Guard),
+        (|s, x| s.guard = Some(x), 1.01, Field::Guard),
     ];
     for (set, beyond, field) in fields {
         for (x, error) in [
@@ -154,6 +56,7 @@ fn settings_are_what_the_message_says() {
         time_to_live: 0.05,
         growth: 0.06,
         hold: 0.07,
+        guard: Some(0.08),
     };
     let core = convert::settings(&wire).unwrap();
     assert!(!core.deformable);
@@ -161,6 +64,10 @@ fn settings_are_what_the_message_says() {
     assert_eq!((core.gain, core.limits.speed, core.limits.acceleration), (0.01, 0.02, Some(0.03)));
     assert_eq!(core.limits.deceleration, 0.04);
     assert_eq!((core.ageing.time_to_live, core.ageing.growth, core.ageing.hold), (0.05, 0.06, 0.07));
+    assert_eq!(core.guard.map(|guard| guard.approach), Some(0.08));
+    let unguarded = Settings { guard: None, ..wire };
+    assert_eq!(convert::settings(&unguarded).unwrap().guard, None);
+    assert_eq!(Settings::from(&convert::settings(&unguarded).unwrap()).guard, None);
     let back = Settings::from(&core);
     assert_eq!(Settings { steering: wire.steering, ..back }, wire);
     assert!(matches!(back.steering, Steering::Fixed { angle } if (angle - 0.785).abs() < 1e-6));
@@ -258,45 +165,41 @@ fn each_fault_of_a_skill_is_named() {
     assert_eq!(linear([0.0; 3], 1001.0), OutOfRange(Field::LinearGain));
 }
 
+#[test]
+fn a_scan_is_what_the_message_says_and_each_fault_is_named() {
+    let points = [[0.1, 0.2, 0.3], [-0.4, -0.5, -0.6]];
+    let scan = convert::scan::<3>(&points, 0.05).unwrap();
+    assert_eq!(scan.points().iter().map(padded).collect::<Vec<_>>(), points);
+    assert_eq!(scan.radius(), 0.05);
+    assert_eq!(convert::scan::<2>(&points, 0.05), Err(DeviceError::Dimension));
+    assert_eq!(convert::scan::<2>(&[[0.1, 0.2, 0.0]], 0.05).unwrap().points().len(), 1);
+    assert!(convert::scan::<3>(&[points[0]; SCAN_MAX], 0.05).is_ok());
+    let (nan, out) = (DeviceError::NotFinite, DeviceError::OutOfRange);
+    assert_eq!(convert::scan::<3>(&[points[0]; SCAN_MAX + 1], 0.05), Err(out(Field::Points)));
+    assert_eq!(convert::scan::<3>(&[points[0], [0.0, 0.0, NAN]], 0.05), Err(nan(Field::Points)));
+    assert_eq!(convert::scan::<3>(&[points[0], [0.0, 0.0, 1000.5]], 0.05), Err(out(Field::Points)));
+    assert_eq!(convert::scan::<3>(&points, f32::INFINITY), Err(nan(Field::Radius)));
+    for radius in [0.0, -0.05, 101.0] {
+        assert_eq!(convert::scan::<3>(&points, radius), Err(out(Field::Radius)));
+    }
+}
+
+#[test]
+fn an_attractor_is_what_the_message_says_and_each_fault_is_named() {
+    let (position, velocity) = ([0.5, 0.25, 0.125], [1.0, -2.0, 4.0]);
+    let target = convert::target::<3>(&position, &velocity).unwrap();
+    assert_eq!((padded(target.position()), padded(target.velocity())), (position, velocity));
+    assert_eq!(padded(&target.after(0.25)), [0.75, -0.25, 1.125]);
+    let (nan, out) = (DeviceError::NotFinite, DeviceError::OutOfRange);
+    assert_eq!(convert::target::<3>(&[NAN; 3], &velocity), Err(nan(Field::Attractor)));
+    assert_eq!(convert::target::<3>(&position, &[0.0, f32::INFINITY, 0.0]), Err(nan(Field::AttractorVelocity)));
+    assert_eq!(convert::target::<3>(&[0.0, 1000.5, 0.0], &velocity), Err(out(Field::Attractor)));
+    assert_eq!(convert::target::<3>(&position, &[0.0, 0.0, -101.0]), Err(out(Field::AttractorVelocity)));
+    assert_eq!(convert::target::<2>(&position, &[0.0; 3]), Err(DeviceError::Dimension));
+    assert_eq!(convert::target::<2>(&[0.0; 3], &velocity), Err(DeviceError::Dimension));
+}
+
 proptest! {
-    #[test]
-    fn what_passes_is_finite_and_comes_back(message in generate::obstacle()) {
-        let _ = convert::obstacle::<2>(&message);
-        let _ = convert::obstacle::<3>(&message);
-        // Hardly any float is a sound one, so the same again from small numbers.
-        let small = |v: [f32; 3]| v.map(|x| (x.to_bits() % 2_001) as f32 * 1e-3 - 1.0);
-        let [w, i, j] = small(message.center);
-        let k = small(message.axes)[0];
-        let length = (w * w + i * i + j * j + k * k).sqrt();
-        prop_assume!(length > 0.1);
-        let sound = Obstacle {
-            center: small(message.center),
-            rotation: [w, i, j, k].map(|x| x / length),
-            axes: small(message.axes).map(|x| 0.01 + x.abs()),
-            soft_ratio: small(message.soft_ratio).map(|x| 1.0 + x.abs()),
-            margin: small(message.margin).map(|x| 1.0 + x.abs()),
-            curvature: 1 + message.curvature % 8,
-            reference: [0.0; 3],
-            velocity: small(message.velocity),
-            angular_velocity: small(message.angular_velocity),
-        };
-        let core = convert::obstacle::<3>(&sound).unwrap();
-        let back = Obstacle::from(core.spec());
-        prop_assert_eq!(Obstacle { rotation: sound.rotation, ..back }, sound);
-        // A rotation has two quaternions.
-        let cosine: f32 = back.rotation.iter().zip(sound.rotation).map(|(a, b)| a * b).sum();
-        prop_assert!((cosine.abs() - 1.0).abs() < 1e-6, "{:?}", back.rotation);
-        prop_assert!(back.rotation[0] >= 0.0);
-    }
-
-    #[test]
-    fn a_turn_in_the_plane_comes_back(angle in -4.0..4.0f64) {
-        let core = ObstacleSpec::<f64, 2> { rotation: rotation::planar(angle), ..ObstacleSpec::default() };
-        let back = convert::obstacle::<2>(&Obstacle::from(&core)).unwrap();
-        let turned = back.spec().rotation.map(f64::from);
-        prop_assert!((turned - core.rotation).amax() < 3e-7, "{}", turned);
-    }
-
     #[test]
     fn any_settings_are_answered(message in generate::settings()) {
         if let Ok(core) = convert::settings(&message) {
@@ -309,10 +212,4 @@ proptest! {
         let _ = convert::motion::<2>(&Model { dimension: 2, ..message.clone() });
         let _ = convert::motion::<3>(&Model { dimension: 3, ..message });
     }
-}
-
-#[test]
-fn errors_of_the_core_keep_their_names() {
-    assert_eq!(Field::from(ObstacleError::Spin), Field::AngularVelocity);
-    assert_eq!(Field::from(ObstacleError::SoftRatio).name(), "soft");
 }

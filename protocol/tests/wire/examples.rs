@@ -2,13 +2,13 @@
 
 use heapless::Vec;
 use pliant_protocol::message::{
-    DeviceError, Field, FrameFault, Mode, Obstacle, Region, Settings, Statistics, Steering, StopReason, TickMode,
-    UploadError,
+    DeviceError, Field, FrameFault, Mode, Obstacle, Region, ScanFault, Settings, Shape, Statistics, Steering,
+    StopReason, TickMode, UploadError,
 };
 use pliant_protocol::model::{Component, Model, Motion};
 use pliant_protocol::{ToDevice, ToHost};
 
-pub const FIELDS: [Field; 24] = [
+pub const FIELDS: [Field; 31] = [
     Field::Center,
     Field::Rotation,
     Field::Axes,
@@ -33,6 +33,13 @@ pub const FIELDS: [Field; 24] = [
     Field::Mean,
     Field::Whitening,
     Field::Matrix,
+    Field::Rounding,
+    Field::Vertices,
+    Field::Growth,
+    Field::Guard,
+    Field::Points,
+    Field::Radius,
+    Field::AttractorVelocity,
 ];
 pub const MODES: [Mode; 7] = [
     Mode::Idle,
@@ -52,7 +59,7 @@ pub const UPLOAD_ERRORS: [UploadError; 6] = [
     UploadError::Incomplete,
     UploadError::Malformed,
 ];
-pub const DEVICE_ERRORS: [DeviceError; 15] = [
+pub const DEVICE_ERRORS: [DeviceError; 17] = [
     DeviceError::Schema { ours: 0x0123_4567_89ab_cdef },
     DeviceError::Frame(FrameFault::Version { ours: 1 }),
     DeviceError::Frame(FrameFault::Message),
@@ -68,20 +75,34 @@ pub const DEVICE_ERRORS: [DeviceError; 15] = [
     DeviceError::Certificate { component: None },
     DeviceError::Certificate { component: Some(15) },
     DeviceError::NotGreeted,
+    DeviceError::Scan(ScanFault::Gap { expected: 300 }),
+    DeviceError::Scan(ScanFault::Total { expected: 128 }),
 ];
 
 /// No two fields alike, so that a swap shows.
 pub const OBSTACLE: Obstacle = Obstacle {
     center: [0.2, 0.21, 0.22],
     rotation: [0.5, -0.5, 0.5, -0.5],
-    axes: [0.04, 0.05, 0.06],
+    shape: Shape::Ellipsoid { axes: [0.04, 0.05, 0.06], curvature: 3 },
+    wall: false,
     soft_ratio: [1.5, 1.25, 1.125],
     margin: [1.1, 1.2, 1.3],
-    curvature: 3,
     reference: [0.01, -0.02, 0.03],
     velocity: [-0.1, 0.2, -0.3],
     angular_velocity: [0.7, 0.8, 0.9],
+    growth: -0.04,
 };
+
+/// The other shapes. No two numbers alike here either.
+pub fn shapes() -> [Shape; 4] {
+    [
+        Shape::Box { half: [0.04, 0.05, 0.06], rounding: 0.01 },
+        Shape::Cylinder { radius: 0.04, half_length: 0.05, rounding: 0.01 },
+        Shape::Capsule { radius: 0.04, half_length: 0.05 },
+        Shape::Polygon { vertices: Vec::from_slice(&[[0.1, 0.0], [-0.06, 0.08], [-0.02, -0.03]]).unwrap() },
+    ]
+}
+
 pub const FIXED: Settings = Settings {
     deformable: false,
     steering: Steering::Fixed { angle: 0.785 },
@@ -92,6 +113,7 @@ pub const FIXED: Settings = Settings {
     time_to_live: 0.2,
     growth: 0.05,
     hold: 1.0,
+    guard: Some(0.5),
 };
 pub const COUNTED: Statistics = Statistics {
     ticks: 1,
@@ -107,14 +129,21 @@ pub const COUNTED: Statistics = Statistics {
     worst_tick_us: 11,
 };
 
-pub fn to_device() -> [ToDevice; 14] {
+pub fn to_device() -> [ToDevice; 20] {
+    let [rounded, cylinder, capsule, polygon] = shapes();
+    let upsert = |shape| ToDevice::Upsert { id: 1, stamp: 2, obstacle: Obstacle { shape, wall: true, ..OBSTACLE } };
     [
         ToDevice::Hello { schema: 0x0123_4567_89ab_cdef },
         ToDevice::UploadBegin { bytes: 1_255, crc: 0xdead_beef },
         ToDevice::UploadChunk { offset: 192, data: Vec::from_slice(&[1, 0, 255]).unwrap() },
         ToDevice::UploadCommit,
         ToDevice::Configure(FIXED),
-        ToDevice::Configure(Settings { steering: Steering::WithFlow { beta: 1.0 }, acceleration: None, ..FIXED }),
+        ToDevice::Configure(Settings {
+            steering: Steering::WithFlow { beta: 1.0 },
+            acceleration: None,
+            guard: None,
+            ..FIXED
+        }),
         ToDevice::Upsert { id: 300, stamp: 1_000_000, obstacle: OBSTACLE },
         ToDevice::Remove { id: 300 },
         ToDevice::Clear,
@@ -123,6 +152,18 @@ pub fn to_device() -> [ToDevice; 14] {
         ToDevice::Arm { tick: TickMode::Stepped },
         ToDevice::Stop,
         ToDevice::Statistics,
+        ToDevice::Scan {
+            stamp: 1_002_000,
+            start: 16,
+            total: 128,
+            radius: 0.05,
+            points: Vec::from_slice(&[[0.1, 0.2, 0.3], [-0.1, -0.2, -0.3]]).unwrap(),
+        },
+        ToDevice::Aim { stamp: 1_003_000, position: [0.5, 0.25, 0.125], velocity: [-0.1, 0.2, -0.3] },
+        upsert(rounded),
+        upsert(cylinder),
+        upsert(capsule),
+        upsert(polygon),
     ]
 }
 

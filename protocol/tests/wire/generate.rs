@@ -2,12 +2,12 @@
 
 use heapless::Vec;
 use pliant_protocol::message::{
-    BOARD_MAX, CHUNK_MAX, DeviceError, Field, FrameFault, Mode, Obstacle, Region, Settings, Statistics, Steering,
-    TickMode, UploadError,
+    BOARD_MAX, CHUNK_MAX, DeviceError, Field, FrameFault, Mode, Obstacle, PIECE_MAX, Region, ScanFault, Settings,
+    Shape, Statistics, Steering, TickMode, UploadError, VERTICES_MAX,
 };
 use pliant_protocol::model::{COMPONENTS_MAX, Component, Model, Motion};
 use pliant_protocol::{ToDevice, ToHost};
-use proptest::array::{uniform3, uniform4, uniform6, uniform9};
+use proptest::array::{uniform2, uniform3, uniform4, uniform6, uniform9};
 use proptest::collection::vec;
 use proptest::option::of;
 use proptest::prelude::*;
@@ -27,34 +27,49 @@ fn steering() -> impl Strategy<Value = Steering> {
 }
 
 pub fn settings() -> impl Strategy<Value = Settings> {
-    (any::<bool>(), steering(), of(float()), uniform6(float())).prop_map(
-        |(deformable, steering, acceleration, [gain, speed, deceleration, time_to_live, growth, hold])| Settings {
-            deformable,
-            steering,
-            gain,
-            speed,
-            acceleration,
-            deceleration,
-            time_to_live,
-            growth,
-            hold,
+    (any::<bool>(), steering(), uniform2(of(float())), uniform6(float())).prop_map(
+        |(deformable, steering, [acceleration, guard], [gain, speed, deceleration, time_to_live, growth, hold])| {
+            Settings {
+                deformable,
+                steering,
+                gain,
+                speed,
+                acceleration,
+                deceleration,
+                time_to_live,
+                growth,
+                hold,
+                guard,
+            }
         },
     )
 }
 
+fn shape() -> impl Strategy<Value = Shape> {
+    prop_oneof![
+        (uniform3(float()), any::<u8>()).prop_map(|(axes, curvature)| Shape::Ellipsoid { axes, curvature }),
+        (uniform3(float()), float()).prop_map(|(half, rounding)| Shape::Box { half, rounding }),
+        uniform3(float()).prop_map(|[radius, half_length, rounding]| Shape::Cylinder { radius, half_length, rounding }),
+        uniform2(float()).prop_map(|[radius, half_length]| Shape::Capsule { radius, half_length }),
+        vec(uniform2(float()), 0..=VERTICES_MAX)
+            .prop_map(|vertices| Shape::Polygon { vertices: Vec::from_slice(&vertices).unwrap() }),
+    ]
+}
+
 pub fn obstacle() -> impl Strategy<Value = Obstacle> {
     let v = || uniform3(float());
-    (v(), uniform4(float()), v(), v(), v(), any::<u8>(), v(), v(), v()).prop_map(
-        |(center, rotation, axes, soft_ratio, margin, curvature, reference, velocity, angular_velocity)| Obstacle {
+    (v(), uniform4(float()), shape(), any::<bool>(), v(), v(), v(), v(), v(), float()).prop_map(
+        |(center, rotation, shape, wall, soft_ratio, margin, reference, velocity, angular_velocity, growth)| Obstacle {
             center,
             rotation,
-            axes,
+            shape,
+            wall,
             soft_ratio,
             margin,
-            curvature,
             reference,
             velocity,
             angular_velocity,
+            growth,
         },
     )
 }
@@ -78,6 +93,20 @@ pub fn to_device() -> impl Strategy<Value = ToDevice> {
         prop_oneof![Just(TickMode::Timed), Just(TickMode::Stepped)].prop_map(|tick| ToDevice::Arm { tick }),
         Just(ToDevice::Stop),
         Just(ToDevice::Statistics),
+        (any::<(u64, u16, u16)>(), float(), vec(uniform3(float()), 0..=PIECE_MAX)).prop_map(
+            |((stamp, start, total), radius, points)| ToDevice::Scan {
+                stamp,
+                start,
+                total,
+                radius,
+                points: Vec::from_slice(&points).unwrap()
+            }
+        ),
+        (any::<u64>(), uniform3(float()), uniform3(float())).prop_map(|(stamp, position, velocity)| ToDevice::Aim {
+            stamp,
+            position,
+            velocity
+        }),
     ]
 }
 
@@ -113,6 +142,8 @@ fn device_error() -> impl Strategy<Value = DeviceError> {
         Just(DeviceError::NoModel),
         upload_error().prop_map(DeviceError::Upload),
         of(any::<u8>()).prop_map(|component| DeviceError::Certificate { component }),
+        any::<u16>().prop_map(|expected| DeviceError::Scan(ScanFault::Gap { expected })),
+        any::<u16>().prop_map(|expected| DeviceError::Scan(ScanFault::Total { expected })),
     ]
 }
 

@@ -9,15 +9,16 @@ use serde::{Serialize, de::DeserializeOwned};
 
 use crate::examples;
 
-const TO_DEVICE: [&str; 14] = [
+const TO_DEVICE: [&str; 20] = [
     "01010000ef9bafcdf8acd191017cfdff7e",
     "01020001e709effdb6f50d66ac4912",
     "01030002c001030100fff01521a1",
     "0104000391b6ac18",
-    "010500040000c3f5483f8fc2f53c0000003f010000004000008040cdcc4c3ecdcc4c3d0000803f1bde4318",
-    "0106000400010000803f8fc2f53c0000003f0000008040cdcc4c3ecdcc4c3d0000803f6254423d",
-    "01070005ac02c0843dcdcc4c3e3d0a573eae47613e0000003f000000bf0000003f000000bf0ad7233dcdcc4c3d8fc2753d0000c03f0000a03f\
-     0000903fcdcc8c3f9a99993f6666a63f030ad7233c0ad7a3bc8fc2f53ccdccccbdcdcc4c3e9a9999be3333333fcdcc4c3f6666663f15c082bc",
+    "010500040000c3f5483f8fc2f53c0000003f010000004000008040cdcc4c3ecdcc4c3d0000803f010000003f58921cbc",
+    "0106000400010000803f8fc2f53c0000003f0000008040cdcc4c3ecdcc4c3d0000803f0090f2bdd2",
+    "01070005ac02c0843dcdcc4c3e3d0a573eae47613e0000003f000000bf0000003f000000bf000ad7233dcdcc4c3d8fc2753d03000000c03f00\
+     00a03f0000903fcdcc8c3f9a99993f6666a63f0ad7233c0ad7a3bc8fc2f53ccdccccbdcdcc4c3e9a9999be3333333fcdcc4c3f6666663f0ad7\
+     23bde534f50e",
     "01080006ac027d21211a",
     "010900072f29f8dc",
     "010a0008a88c3da470bd3e85ebd13e000000bf2e90c6d0",
@@ -25,6 +26,19 @@ const TO_DEVICE: [&str; 14] = [
     "010c0009014093d88c",
     "010d000ae6c10efd",
     "010e000b96824be5",
+    "010f000c90943d108001cdcc4c3d02cdcccc3dcdcc4c3e9a99993ecdccccbdcdcc4cbe9a9999bec007742e",
+    "0110000df89b3d0000003f0000803e0000003ecdccccbdcdcc4c3e9a9999be601bed15",
+    "011100050102cdcc4c3e3d0a573eae47613e0000003f000000bf0000003f000000bf010ad7233dcdcc4c3d8fc2753d0ad7233c010000c03f00\
+     00a03f0000903fcdcc8c3f9a99993f6666a63f0ad7233c0ad7a3bc8fc2f53ccdccccbdcdcc4c3e9a9999be3333333fcdcc4c3f6666663f0ad7\
+     23bd70d36a61",
+    "011200050102cdcc4c3e3d0a573eae47613e0000003f000000bf0000003f000000bf020ad7233dcdcc4c3d0ad7233c010000c03f0000a03f00\
+     00903fcdcc8c3f9a99993f6666a63f0ad7233c0ad7a3bc8fc2f53ccdccccbdcdcc4c3e9a9999be3333333fcdcc4c3f6666663f0ad723bdba1d\
+     b8eb",
+    "011300050102cdcc4c3e3d0a573eae47613e0000003f000000bf0000003f000000bf030ad7233dcdcc4c3d010000c03f0000a03f0000903fcd\
+     cc8c3f9a99993f6666a63f0ad7233c0ad7a3bc8fc2f53ccdccccbdcdcc4c3e9a9999be3333333fcdcc4c3f6666663f0ad723bdd45f875f",
+    "011400050102cdcc4c3e3d0a573eae47613e0000003f000000bf0000003f000000bf0403cdcccc3d000000008fc275bd0ad7a33d0ad7a3bc8f\
+     c2f5bc010000c03f0000a03f0000903fcdcc8c3f9a99993f6666a63f0ad7233c0ad7a3bc8fc2f53ccdccccbdcdcc4c3e9a9999be3333333fcd\
+     cc4c3f6666663f0ad723bdd62aba0c",
 ];
 
 const TO_HOST: [&str; 5] = [
@@ -79,7 +93,7 @@ fn variants_keep_their_numbers() {
         variants.iter().map(|v| hex(postcard::to_slice(v, &mut [0; 32]).unwrap())).collect()
     }
     let counted = |n: usize| (0..n).map(|i| format!("{i:02x}")).collect::<Vec<_>>();
-    assert_eq!(encoded(&examples::FIELDS), counted(24));
+    assert_eq!(encoded(&examples::FIELDS), counted(31));
     assert_eq!(encoded(&examples::REGIONS), counted(4));
     assert_eq!(encoded(&examples::UPLOAD_ERRORS), counted(6));
     assert_eq!(encoded(&examples::MODES), ["00", "01", "02", "03", "0400", "0401", "0402"]);
@@ -101,6 +115,8 @@ fn variants_keep_their_numbers() {
             "0a00",
             "0a010f",
             "0b",
+            "0c00ac02",
+            "0c018001",
         ]
     );
 }
@@ -108,5 +124,5 @@ fn variants_keep_their_numbers() {
 #[test]
 fn the_schema_is_the_one_of_this_version() {
     assert_eq!(VERSION, 1);
-    assert_eq!(SCHEMA, 0xe82b_f46e_7d50_615a);
+    assert_eq!(SCHEMA, 0x158d_8647_97c6_6aa2);
 }

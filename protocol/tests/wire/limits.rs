@@ -2,7 +2,8 @@
 
 use heapless::Vec;
 use pliant_protocol::message::{
-    CHUNK_MAX, DeviceError, Mode, Obstacle, Region, Settings, Statistics, Steering, StopReason, TickMode,
+    CHUNK_MAX, DeviceError, Mode, Obstacle, PIECE_MAX, Region, Settings, Shape, Statistics, Steering, StopReason,
+    TickMode, VERTICES_MAX,
 };
 use pliant_protocol::model::{COMPONENTS_MAX, Component, MODEL_MAX, Model, Motion};
 use pliant_protocol::{FRAME_MAX, ToDevice, ToHost, encode};
@@ -14,13 +15,14 @@ use crate::examples::DEVICE_ERRORS;
 const OBSTACLE: Obstacle = Obstacle {
     center: [f32::MAX; 3],
     rotation: [f32::MAX; 4],
-    axes: [f32::MAX; 3],
+    shape: Shape::Ellipsoid { axes: [f32::MAX; 3], curvature: u8::MAX },
+    wall: true,
     soft_ratio: [f32::MAX; 3],
     margin: [f32::MAX; 3],
-    curvature: u8::MAX,
     reference: [f32::MAX; 3],
     velocity: [f32::MAX; 3],
     angular_velocity: [f32::MAX; 3],
+    growth: f32::MAX,
 };
 const SETTINGS: Settings = Settings {
     deformable: true,
@@ -32,6 +34,7 @@ const SETTINGS: Settings = Settings {
     time_to_live: f32::MAX,
     growth: f32::MAX,
     hold: f32::MAX,
+    guard: Some(f32::MAX),
 };
 const STATISTICS: Statistics = Statistics {
     ticks: u32::MAX,
@@ -53,19 +56,36 @@ fn length<M: Serialize>(message: &M) -> usize {
 
 #[test]
 fn the_longest_of_each_message_fits_a_frame() {
+    let upsert = |shape| ToDevice::Upsert { id: u16::MAX, stamp: u64::MAX, obstacle: Obstacle { shape, ..OBSTACLE } };
+    let x = f32::MAX;
     let to_device = [
         (ToDevice::Hello { schema: u64::MAX }, 18),
         (ToDevice::UploadBegin { bytes: u32::MAX, crc: u32::MAX }, 18),
         (ToDevice::UploadChunk { offset: u32::MAX, data: Vec::from_slice(&[255; CHUNK_MAX]).unwrap() }, 207),
         (ToDevice::UploadCommit, 8),
-        (ToDevice::Configure(SETTINGS), 43),
-        (ToDevice::Upsert { id: u16::MAX, stamp: u64::MAX, obstacle: OBSTACLE }, 122),
+        (ToDevice::Configure(SETTINGS), 48),
+        (upsert(OBSTACLE.shape), 128),
+        (upsert(Shape::Box { half: [x; 3], rounding: x }), 131),
+        (upsert(Shape::Cylinder { radius: x, half_length: x, rounding: x }), 127),
+        (upsert(Shape::Capsule { radius: x, half_length: x }), 123),
+        (upsert(Shape::Polygon { vertices: Vec::from_slice(&[[x; 2]; VERTICES_MAX]).unwrap() }), 212),
         (ToDevice::Remove { id: u16::MAX }, 11),
         (ToDevice::Clear, 8),
         (ToDevice::State { stamp: u64::MAX, position: [f32::MAX; 3] }, 30),
         (ToDevice::Arm { tick: TickMode::Stepped }, 9),
         (ToDevice::Stop, 8),
         (ToDevice::Statistics, 8),
+        (
+            ToDevice::Scan {
+                stamp: u64::MAX,
+                start: u16::MAX,
+                total: u16::MAX,
+                radius: x,
+                points: Vec::from_slice(&[[x; 3]; PIECE_MAX]).unwrap(),
+            },
+            221,
+        ),
+        (ToDevice::Aim { stamp: u64::MAX, position: [x; 3], velocity: [x; 3] }, 42),
     ];
     for (message, expected) in &to_device {
         assert_eq!(length(message), *expected, "{message:?}");

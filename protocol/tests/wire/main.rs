@@ -8,4 +8,5 @@ mod examples;
 mod generate;
 mod golden;
 mod limits;
+mod obstacles;
 mod round_trip;

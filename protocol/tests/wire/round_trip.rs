@@ -90,7 +90,7 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_with_a_right_crc_are_answered(sequence: u16, tag in 0..14u8, bytes in vec(any::<u8>(), 0..250)) {
+    fn any_bytes_with_a_right_crc_are_answered(sequence: u16, tag in 0..16u8, bytes in vec(any::<u8>(), 0..250)) {
         let [low, high] = sequence.to_le_bytes();
         let frame = sealed(&[&[VERSION, low, high, tag], &bytes[..]].concat());
         for error in [decode::<ToDevice>(&frame).err(), decode::<ToHost>(&frame).err()].into_iter().flatten() {
