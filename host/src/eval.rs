@@ -12,6 +12,9 @@ use crate::error::Error;
 use crate::scene::{ConvertError, MAX_OBSTACLES, Scene};
 use crate::sim;
 
+/// A tick, s: what the guard looks ahead by.
+const TICK: f64 = 1e-3;
+
 /// A stage of the tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
@@ -21,7 +24,7 @@ pub enum Stage {
     Modulated,
     /// Faster or slower in soft layers.
     Adapted,
-    /// Within the speed limit, from a steady state (the acceleration limit depends on the past).
+    /// Within the speed limit and guarded, from a steady state (the acceleration limit depends on the past).
     Final,
 }
 
@@ -110,6 +113,10 @@ fn evaluate_in<S: Scalar, const D: usize>(
     stage: Stage,
 ) -> Result<Vec<Evaluation>, ConvertError> {
     let controller: Controller<S, D, MAX_OBSTACLES> = scene.controller(0.0)?;
+    // The acceleration limit depends on the past.
+    let mut steady = controller.clone();
+    let limits = pliant_core::Limits { acceleration: None, ..controller.settings().limits };
+    steady.set_settings(pliant_core::Settings { limits, ..*controller.settings() });
     let rows = points.0.iter().filter_map(|point| {
         let state = RobotState::new(Vector::<S, D>::from_fn(|i, _| S::from_f64(point[i])))?;
         let stages = controller.evaluate(&state);
@@ -119,10 +126,9 @@ fn evaluate_in<S: Scalar, const D: usize>(
             Stage::Modulated => stages.modulated,
             Stage::Adapted => stages.adapted,
             Stage::Final => {
-                let limits = pliant_core::Limits { acceleration: None, ..controller.settings().limits };
-                let (velocity, limited) = limits.apply(stages.adapted, &stages.adapted, S::one());
-                status |= limited;
-                velocity
+                let command = steady.clone().tick(&state, S::from_f64(TICK));
+                status = command.status;
+                command.velocity
             }
         };
         Some(Evaluation {
@@ -154,9 +160,14 @@ pub fn evaluate_on(session: &mut Session, scene: &Scene, points: &Points) -> Res
         // A step takes a millisecond, in which obstacles move on and age: put them back.
         let stamp = i as u64 * 1000;
         for o in scene.obstacles_at(0.0).filter(|o| i % 100 == 0 || o.obstacle.is_moving()) {
-            let upsert =
-                ToDevice::Upsert { id: o.obstacle.id(), stamp, obstacle: wire::obstacle(&o, scene.dimension()) };
-            session.request("an obstacle", &upsert)?;
+            let obstacle = wire::obstacle(&o, scene.dimension())?;
+            session.request("an obstacle", &ToDevice::Upsert { id: o.obstacle.id(), stamp, obstacle })?;
+        }
+        for piece in wire::scan(scene, stamp).filter(|_| i % 100 == 0) {
+            session.request("the scan", &piece)?;
+        }
+        if let Some(aim) = wire::aim(scene, 0.0, stamp) {
+            session.request("the attractor", &aim)?;
         }
         let command = session.step(stamp, wire::vector(point))?;
         rows.push(Evaluation {

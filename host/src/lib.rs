@@ -1,6 +1,7 @@
 //! The host side of Pliant, as a library: what a user does, a module each.
 #![forbid(unsafe_code)]
 
+pub mod bench;
 pub mod bridge;
 pub mod cli;
 pub mod error;

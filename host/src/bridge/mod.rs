@@ -36,6 +36,9 @@ pub enum BridgeError {
         /// Why it refused.
         error: DeviceError,
     },
+    /// The scene cannot be sent as it then is.
+    #[error(transparent)]
+    Scene(#[from] crate::scene::ConvertError),
     /// It speaks another protocol.
     #[error(
         "{device} was built from other messages (its schema is {theirs:016x}, ours {ours:016x}): use firmware and host tool of one release"

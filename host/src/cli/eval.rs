@@ -37,7 +37,7 @@ enum StageName {
     Modulated,
     /// Faster or slower in soft layers.
     Adapted,
-    /// Within the speed limit: what the robot would get, from a steady state.
+    /// Within the speed limit and guarded: what the robot would get, from a steady state.
     Final,
 }
 

@@ -10,6 +10,7 @@ macro_rules! say {
     };
 }
 
+mod bench;
 mod check;
 mod eval;
 mod learn;
@@ -51,6 +52,8 @@ enum Command {
     Eval(eval::Args),
     /// Draw a scene: streamlines, hard and soft regions, trajectories.
     Plot(plot::Args),
+    /// Measure how long the method takes: here, or in instructions on emulated boards.
+    Bench(bench::Args),
 }
 
 /// Parses the command line, runs it, reports, and gives the exit code.
@@ -73,6 +76,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::main(&args, json),
         Command::Eval(args) => eval::main(&args, json),
         Command::Plot(args) => plot::main(&args, json),
+        Command::Bench(args) => bench::main(&args, json),
     };
     crate::error::report(result, json)
 }

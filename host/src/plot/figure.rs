@@ -218,6 +218,21 @@ impl Svg {
         }
     }
 
+    /// What is inside closed lines, or between them: where an odd number of them is around.
+    pub fn area(&mut self, rings: &[Vec<Pixel>], style: &str) {
+        let d = outlines(rings);
+        let _ = writeln!(self.body, r#"<path d="{d}" fill-rule="evenodd" {style}/>"#);
+    }
+
+    /// Draws with everything outside an [`area`](Self::area) cut off. `id` is unique in the figure.
+    pub fn within(&mut self, id: &str, rings: &[Vec<Pixel>], draw: impl FnOnce(&mut Self)) {
+        let d = outlines(rings);
+        let _ = writeln!(self.body, r#"<clipPath id="{id}"><path d="{d}" clip-rule="evenodd"/></clipPath>"#);
+        let _ = writeln!(self.body, r#"<g clip-path="url(#{id})">"#);
+        draw(self);
+        self.body += "</g>\n";
+    }
+
     /// A rectangle by its left upper corner.
     pub fn rect(&mut self, at: Pixel, size: Vector2<f64>, style: &str) {
         let _ = writeln!(
@@ -297,6 +312,17 @@ impl Svg {
             h = size.y
         )
     }
+}
+
+fn outlines(rings: &[Vec<Pixel>]) -> String {
+    let mut d = String::new();
+    for ring in rings {
+        for (i, p) in ring.iter().enumerate() {
+            let _ = write!(d, "{}{:.2} {:.2}", if i == 0 { "M" } else { "L" }, p.x, p.y);
+        }
+        d += "Z";
+    }
+    d
 }
 
 #[cfg(test)]

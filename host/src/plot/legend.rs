@@ -3,8 +3,10 @@
 use nalgebra::{Point2, Vector2};
 
 use super::figure::{Anchor, Axes, FONT_SIZE, Pixel, Svg, text_width, ticks};
-use super::panel::{
-    ATTRACTOR, CORE, CUT_CORE, DOT, GHOST, LINE, MARGIN, OVERLAP, Panel, SHELL, START, TRACK, speed_colour,
+use super::panel::Panel;
+use super::style::{
+    ATTRACTOR, ATTRACTOR_TRACK, CORE, CUT_CORE, DOT, GHOST, LINE, MARGIN, OVERLAP, SCAN, SCAN_POINT, SHELL, START,
+    TRACK, speed_colour,
 };
 
 /// The scale of speeds, right of the panels.
@@ -32,12 +34,17 @@ type Sign = fn(&mut Svg, Pixel);
 /// Lines of signs with their meaning; the lower end of the last.
 pub(super) fn draw(svg: &mut Svg, panels: &[Panel<'_>], corner: Pixel, right: f64) -> f64 {
     let any = |has: &dyn Fn(&Panel<'_>) -> bool| panels.iter().any(has);
-    let entries: [(bool, &str, Sign); 11] = [
+    let entries: [(bool, &str, Sign); 13] = [
         (true, "start", |svg, p| svg.circle(p, 4.2, START)),
         (true, "attractor", |svg, p| svg.star(p, 7.0, ATTRACTOR)),
+        (any(&|p| p.has_aim()), "attractor moves", |svg, p| dash(svg, p, ATTRACTOR_TRACK)),
         (any(&|p| p.has_trajectories()), "path", |svg, p| dash(svg, p, LINE)),
         (any(&|p| p.has_cores()), "hard core", |svg, p| patch(svg, p, CORE)),
         (any(&|p| p.has_cut_cores()), "hard core, cut", |svg, p| patch(svg, p, CUT_CORE)),
+        (any(&|p| p.has_scan()), "scan", |svg, p| {
+            svg.circle(p, 6.0, SCAN);
+            svg.circle(p, 1.2, SCAN_POINT);
+        }),
         (any(&|p| p.has_margins()), "with margin", |svg, p| dash(svg, p, MARGIN)),
         (any(&|p| p.has_shells()), "soft layer", |svg, p| patch(svg, p, SHELL)),
         (any(&|p| p.has_overlaps()), "overlap of layers", |svg, p| {

@@ -14,7 +14,9 @@ mod legend;
 mod outline;
 mod panel;
 mod png;
+mod seen;
 mod streamlines;
+mod style;
 mod trajectory;
 mod view;
 

@@ -1,17 +1,44 @@
-//! Outlines of obstacles: as they are in 2-D; the section with a plane and the shadow on it in 3-D. All convex.
+//! Outlines of obstacles: as they are in 2-D; the section with a plane and the shadow on it in 3-D, where all shapes are convex.
 
 use std::f64::consts::TAU;
 
 use nalgebra::{Point2, Vector3};
 
 use super::View;
-use crate::scene::PosedObstacle;
+use crate::scene::{PosedObstacle, Shape};
 
-/// A convex polygon, counter-clockwise.
+/// A closed line, counter-clockwise.
 pub type Polygon = Vec<Point2<f64>>;
 
-/// Points of a planar outline.
-const AROUND: u32 = 180;
+/// What is inside a closed line, or outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// Where it ends.
+    pub ring: Polygon,
+    /// Is it what is around the line?
+    pub outside: bool,
+}
+
+impl Region {
+    /// Is a point in it?
+    pub fn holds(&self, p: &Point2<f64>) -> bool {
+        let ends = self.ring.iter().skip(1).chain(self.ring.iter().take(1));
+        // A ray to the right leaves the inside by one crossing more than it enters it.
+        let crosses = |(a, b): (&Point2<f64>, &Point2<f64>)| {
+            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)
+        };
+        let inside = self.ring.iter().zip(ends).filter(|edge| crosses(*edge)).count() % 2 == 1;
+        inside != self.outside
+    }
+
+    /// Has it a point in common with another, as far as the points of both outlines tell?
+    pub fn meets(&self, other: &Self) -> bool {
+        self.ring.iter().any(|p| other.holds(p)) || other.ring.iter().any(|p| self.holds(p))
+    }
+}
+
+/// Points of a planar outline, besides corners.
+const AROUND: u32 = 720;
 /// Meridians and parallels of a surface in space.
 const MESH: (u32, u32) = (240, 120);
 
@@ -28,12 +55,13 @@ pub enum Surface {
 
 /// The surface's outline in the plane of the view; none where the plane misses it.
 pub fn section(o: &PosedObstacle<'_>, surface: Surface, view: &View) -> Option<Polygon> {
+    let around = Around::new(o, surface);
     let Some((axis, level)) = view.plane else {
-        return Some((0..AROUND).map(|i| view.project(&boundary(o, surface, planar(i)))).collect());
+        return Some(angles(&o.shape).map(|a| view.project(&around.at(a.cos(), a.sin(), 0.0))).collect());
     };
     let mut crossings = Vec::new();
     let above = |p: &Vector3<f64>| p[axis] - level;
-    for_each_edge(o, surface, |a, b| {
+    around.for_each_edge(|a, b| {
         let (da, db) = (above(&a), above(&b));
         if (da <= 0.0) != (db <= 0.0) {
             crossings.push(view.project(&(a + (b - a) * (da / (da - db)))));
@@ -45,37 +73,61 @@ pub fn section(o: &PosedObstacle<'_>, surface: Surface, view: &View) -> Option<P
 /// The outline of the surface's projection.
 pub fn shadow(o: &PosedObstacle<'_>, surface: Surface, view: &View) -> Polygon {
     let mut points = Vec::new();
-    for_each_edge(o, surface, |a, _| points.push(view.project(&a)));
+    Around::new(o, surface).for_each_edge(|a, _| points.push(view.project(&a)));
     hull(points)
 }
 
-fn planar(i: u32) -> Vector3<f64> {
-    let angle = TAU * f64::from(i) / f64::from(AROUND);
-    Vector3::new(angle.cos(), angle.sin(), 0.0)
+/// All the way round a planar shape, in order, each of its corners included; of a shape as wide as it is high.
+fn angles(shape: &Shape) -> impl Iterator<Item = f64> + use<> {
+    let mut all: Vec<f64> = (0..AROUND).map(|i| TAU * f64::from(i) / f64::from(AROUND)).collect();
+    if let Shape::Polygon { vertices } = shape {
+        let extent = shape.extent();
+        all.extend(vertices.iter().map(|[x, y]| (y / extent.y).atan2(x / extent.x).rem_euclid(TAU)));
+        all.sort_by(f64::total_cmp);
+    }
+    all.into_iter()
 }
 
-/// The point of the surface in a direction of the obstacle's frame, of unit axes.
-fn boundary(o: &PosedObstacle<'_>, surface: Surface, direction: Vector3<f64>) -> Vector3<f64> {
-    let axes = match surface {
-        Surface::Core => o.obstacle.axes(),
-        Surface::Margin => o.obstacle.axes().component_mul(&o.obstacle.margin()),
-        Surface::Shell => o.obstacle.axes().component_mul(&o.obstacle.soft_ratio()),
-    };
-    let two_p = 2 * i32::from(o.obstacle.curvature());
-    let level: f64 = direction.iter().map(|u| u.powi(two_p)).sum();
-    let on_unit = direction / level.powf(1.0 / f64::from(two_p));
-    o.pose.center + o.pose.rotation * on_unit.component_mul(&axes)
+/// A surface to be looked at from inside.
+struct Around<'a> {
+    o: PosedObstacle<'a>,
+    soft: bool,
+    /// Half extents of the surface: what a unit direction is stretched by, so that points lie evenly on slim bodies too.
+    extent: Vector3<f64>,
 }
 
-fn for_each_edge(o: &PosedObstacle<'_>, surface: Surface, mut edge: impl FnMut(Vector3<f64>, Vector3<f64>)) {
-    let at = |i: u32, j: u32| {
-        let (u, v) = (TAU * f64::from(i) / f64::from(MESH.0), TAU / 2.0 * f64::from(j) / f64::from(MESH.1));
-        boundary(o, surface, Vector3::new(v.sin() * u.cos(), v.sin() * u.sin(), v.cos()))
-    };
-    for i in 0..MESH.0 {
-        for j in 0..MESH.1 {
-            edge(at(i, j), at(i, j + 1));
-            edge(at(i, j), at(i + 1, j));
+impl<'a> Around<'a> {
+    fn new(o: &PosedObstacle<'a>, surface: Surface) -> Self {
+        let extent = o.shape.extent();
+        let scaled = |by: Vector3<f64>| {
+            extent.zip_map(&by, |a, by| if o.obstacle.is_wall() && by > 0.0 { a / by } else { a * by })
+        };
+        let (o, extent) = match surface {
+            Surface::Core => (o.without_margin(), extent),
+            Surface::Margin => (o.clone(), scaled(o.obstacle.margin())),
+            Surface::Shell => (o.clone(), scaled(o.obstacle.soft_ratio())),
+        };
+        Self { o, soft: surface == Surface::Shell, extent }
+    }
+
+    /// The point of the surface in a direction of the obstacle's frame, of unit extent.
+    fn at(&self, x: f64, y: f64, z: f64) -> Vector3<f64> {
+        let direction = self.o.pose.rotation * Vector3::new(x, y, z).component_mul(&self.extent);
+        if self.soft { self.o.soft_surface(&direction) } else { self.o.surface(&direction) }
+    }
+
+    fn for_each_edge(&self, mut edge: impl FnMut(Vector3<f64>, Vector3<f64>)) {
+        let at = |i: u32, j: u32| {
+            let (u, v) = (TAU * f64::from(i) / f64::from(MESH.0), TAU / 2.0 * f64::from(j) / f64::from(MESH.1));
+            self.at(v.sin() * u.cos(), v.sin() * u.sin(), v.cos())
+        };
+        for i in 0..MESH.0 {
+            let meridians = [i, i + 1].map(|i| (0..=MESH.1).map(|j| at(i, j)).collect::<Vec<_>>());
+            let [here, next] = &meridians;
+            for (j, point) in here.iter().enumerate().take(MESH.1 as usize) {
+                edge(*point, here[j + 1]);
+                edge(*point, next[j]);
+            }
         }
     }
 }
@@ -102,28 +154,6 @@ fn hull(mut points: Vec<Point2<f64>>) -> Polygon {
     lower
 }
 
-/// What two convex polygons have in common (Sutherland & Hodgman); none if nothing.
-pub fn overlap(a: &Polygon, b: &Polygon) -> Option<Polygon> {
-    let mut left = a.clone();
-    for (i, from) in b.iter().enumerate() {
-        let to = &b[(i + 1) % b.len()];
-        let side = |p: &Point2<f64>| (to - from).perp(&(p - from));
-        let mut kept = Vec::with_capacity(left.len() + 1);
-        for (j, p) in left.iter().enumerate() {
-            let next = &left[(j + 1) % left.len()];
-            let (here, there) = (side(p), side(next));
-            if here >= 0.0 {
-                kept.push(*p);
-            }
-            if (here >= 0.0) != (there >= 0.0) {
-                kept.push(p + (next - p) * (here / (here - there)));
-            }
-        }
-        left = kept;
-    }
-    (left.len() > 2).then_some(left)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -137,11 +167,30 @@ mod tests {
     }
 
     #[test]
-    fn overlaps_have_the_area_they_should() {
-        let half = overlap(&square(0.0, 0.0), &square(0.5, 0.5)).unwrap();
-        assert!((area(&half) - 0.25).abs() < 1e-12);
-        assert!((area(&overlap(&square(0.0, 0.0), &square(0.0, 0.0)).unwrap()) - 1.0).abs() < 1e-12);
-        assert!(overlap(&square(0.0, 0.0), &square(2.0, 0.0)).is_none());
+    fn regions_meet_where_they_have_points_in_common() {
+        let region = |x, y, outside| Region { ring: square(x, y), outside };
+        let here = region(0.0, 0.0, false);
+        assert!(here.holds(&Point2::new(0.5, 0.2)) && !here.holds(&Point2::new(1.5, 0.2)));
+        assert!(here.meets(&region(0.5, 0.5, false)) && !here.meets(&region(2.0, 0.0, false)));
+        // A wall around it touches what reaches out of it, and nothing that is within.
+        let small = Region {
+            ring: here.ring.iter().map(|p| Point2::from(p.coords * 0.5) + nalgebra::Vector2::new(0.2, 0.2)).collect(),
+            outside: false,
+        };
+        assert!(region(0.0, 0.0, true).meets(&region(0.5, 0.5, false)) && !region(0.0, 0.0, true).meets(&small));
+    }
+
+    #[test]
+    fn corners_of_a_polygon_are_on_its_outline() {
+        let text = "ds.linear = { attractor = [2, 0], gain = 1 }\n[[start]]\nposition = [1, 1]\n[[obstacle]]\nname = \"arrow\"\n\
+            center = [0, 0]\nshape = { polygon = [[0.1, 0.0], [-0.06, 0.08], [-0.02, 0.0], [-0.06, -0.08]] }\n";
+        let scene = crate::scene::Scene::parse("s.toml", text, "".as_ref()).unwrap();
+        let posed = scene.obstacles()[0].at(0.0);
+        let outline = section(&posed, Surface::Core, &View::of(&scene)[0]).unwrap();
+        for corner in [[0.1, 0.0], [-0.06, 0.08], [-0.02, 0.0], [-0.06, -0.08]] {
+            assert!(outline.iter().any(|p| (p - Point2::from(corner)).norm() < 1e-9), "{corner:?}");
+        }
+        assert!((area(&outline) - 0.0096).abs() < 1e-6, "{}", area(&outline));
     }
 
     #[test]

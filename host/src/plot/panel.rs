@@ -3,31 +3,17 @@
 use nalgebra::{Point2, Vector2, Vector3};
 use pliant_core::{Controller, Region, RobotState, Vector};
 
-use super::figure::{Anchor, Axes, Extent, Svg};
-use super::outline::{Polygon, Surface, overlap, section, shadow};
+use super::figure::{Anchor, Axes, Extent, Svg, text_width};
+use super::outline::Region as Area;
+use super::seen::{Seen, track};
+use super::style::{
+    ATTRACTOR, ATTRACTOR_HEAD, ATTRACTOR_LATER, ATTRACTOR_TRACK, CASING, CORE, CUT_CORE, DOT, FLOW, FLOW_HEAD, GHOST,
+    GHOST_INSIDE, LINE, MARGIN, OVERLAP, OVERLAP_LINE, SCAN, SCAN_POINT, SHELL, SMALL, START, TRACK, TRACK_HEAD,
+    speed_colour,
+};
 use super::view::View;
 use super::{Options, PlotError, Trajectory, streamlines};
-use crate::scene::{ConvertError, MAX_OBSTACLES, PosedObstacle, Scene, SceneObstacle};
-
-pub(super) const CORE: &str = r##"fill="#343a43" stroke="#15181c" stroke-width="1""##;
-/// In a section paths pass before and behind what is cut: it does not hide them.
-pub(super) const CUT_CORE: &str = r##"fill="#343a43" fill-opacity="0.5" stroke="#15181c" stroke-width="1""##;
-const SMALL: &str =
-    r##"font-size="10" stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##;
-pub(super) const DOT: &str = r##"fill="#ffffff" stroke="#15181c" stroke-width="1.2""##;
-pub(super) const MARGIN: &str = r##"fill="none" stroke="#15181c" stroke-width="1" stroke-dasharray="2 2.5""##;
-pub(super) const SHELL: &str = r##"fill="#f0a54a" fill-opacity="0.30" stroke="#c97a1c" stroke-width="1""##;
-pub(super) const OVERLAP: &str = r##"fill="#d03b5f" fill-opacity="0.42" stroke="#a81f45" stroke-width="0.8""##;
-pub(super) const GHOST: &str = r##"fill="none" stroke="#6b7480" stroke-width="0.9" stroke-dasharray="4 3""##;
-pub(super) const TRACK: &str =
-    r##"fill="none" stroke="#343a43" stroke-width="1.3" stroke-dasharray="1.5 3" stroke-linecap="round""##;
-pub(super) const LINE: &str = r##"fill="none" stroke="#1f5fbf" stroke-width="3" stroke-linecap="round""##;
-pub(super) const START: &str = r##"fill="#ffffff" stroke="#15181c" stroke-width="1.8""##;
-pub(super) const ATTRACTOR: &str = r##"fill="#ffd43b" stroke="#15181c" stroke-width="1.1" stroke-linejoin="round""##;
-const CASING: &str =
-    r##"fill="none" stroke="#ffffff" stroke-width="5.4" stroke-linecap="round" stroke-linejoin="round""##;
-const FLOW: &str = r##"fill="none" stroke="#9db0c4" stroke-width="1""##;
-const FLOW_HEAD: &str = r##"fill="#8298af""##;
+use crate::scene::{ConvertError, MAX_OBSTACLES, Scene, SceneObstacle};
 
 /// Pixels between streamlines, about.
 const SPACING: f64 = 17.0;
@@ -36,36 +22,6 @@ const MARKS: u32 = 3;
 /// How much wider than high a panel may be, and the inverse.
 const WIDEST: f64 = 2.4;
 const HIGHEST: f64 = 1.15;
-
-/// The colour of a speed between 0 (the least) and 1 (the largest): viridis without its lightest end, which white paper swallows.
-pub(super) fn speed_colour(share: f64) -> String {
-    const COLOURS: [[f64; 3]; 8] = [
-        [68.0, 1.0, 84.0],
-        [70.0, 50.0, 126.0],
-        [54.0, 92.0, 141.0],
-        [39.0, 127.0, 142.0],
-        [31.0, 161.0, 135.0],
-        [74.0, 193.0, 109.0],
-        [130.0, 211.0, 77.0],
-        [178.0, 221.0, 45.0],
-    ];
-    let at = share.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
-    let low = (at.floor() as usize).min(COLOURS.len() - 2);
-    let mix = |i: usize| (COLOURS[low][i] + (COLOURS[low + 1][i] - COLOURS[low][i]) * (at - low as f64)).round() as u8;
-    format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
-}
-
-/// An obstacle as it is seen.
-struct Seen {
-    core: Option<Polygon>,
-    margin: Option<Polygon>,
-    shell: Option<Polygon>,
-    /// Of core and shell, in 3-D.
-    shadows: Vec<Polygon>,
-    /// Where its centre goes while the robot moves, and its core at some times on the way.
-    track: Vec<Point2<f64>>,
-    ghosts: Vec<Polygon>,
-}
 
 /// A velocity, or none where there is nothing to draw.
 type Field = Box<dyn Fn(Vector3<f64>) -> Option<Vector3<f64>>>;
@@ -77,8 +33,13 @@ pub(super) struct Panel<'a> {
     trajectories: &'a [Trajectory],
     speeds: Option<(f64, f64)>,
     seen: Vec<Seen>,
-    overlaps: Vec<Polygon>,
+    /// Pairs of obstacles whose soft layers overlap.
+    overlaps: Vec<(usize, usize)>,
+    /// Where the attractor goes while the robot moves.
+    aim: Vec<Point2<f64>>,
     field: Option<Field>,
+    /// The time of the figure, s.
+    time: f64,
     /// The times at which moving obstacles are drawn again, and robots marked, s.
     marks: Vec<f64>,
 }
@@ -92,16 +53,19 @@ impl<'a> Panel<'a> {
         options: &Options,
     ) -> Result<Self, PlotError> {
         let until = trajectories.iter().map(Trajectory::duration).fold(0.0, f64::max);
-        let moving = scene.obstacles().iter().any(SceneObstacle::is_moving);
+        let aims = scene.attractor_moves();
+        let moving = aims || scene.obstacles().iter().any(SceneObstacle::is_moving);
         let between = until - options.time;
         // To a tenth of a second, as it is written there.
         let mark = |i| options.time + (between * f64::from(i) / f64::from(MARKS + 1) * 10.0).round() / 10.0;
         let marks: Vec<f64> = if moving && between > 0.5 { (1..=MARKS).map(mark).collect() } else { Vec::new() };
         let seen: Vec<Seen> =
-            scene.obstacles_at(options.time).map(|o| see(&o, view, options.time, until, &marks)).collect();
-        let shells: Vec<&Polygon> = seen.iter().filter_map(|s| s.shell.as_ref()).collect();
-        let pairs = shells.iter().enumerate().flat_map(|(i, a)| shells[i + 1..].iter().map(move |b| (a, b)));
-        let overlaps = pairs.filter_map(|(a, b)| overlap(a, b)).collect();
+            scene.obstacles_at(options.time).map(|o| Seen::new(&o, view, options.time, until, &marks)).collect();
+        let shells: Vec<_> = seen.iter().enumerate().filter_map(|(i, s)| Some((i, s.shell.as_ref()?))).collect();
+        let pairs = shells.iter().enumerate().flat_map(|(n, a)| shells[n + 1..].iter().map(move |b| (a, b)));
+        let overlaps = pairs.filter(|(a, b)| a.1.meets(b.1)).map(|(a, b)| (a.0, b.0)).collect();
+        let attractor = |t| view.project(&scene.attractor_at(t).0);
+        let aim = if aims && until > options.time { track(options.time, until, attractor) } else { Vec::new() };
         let field = if !options.streamlines {
             None
         } else if scene.dimension() == 2 {
@@ -109,7 +73,7 @@ impl<'a> Panel<'a> {
         } else {
             Some(field::<3>(scene, options.time)?)
         };
-        Ok(Self { scene, view: *view, trajectories, speeds, seen, overlaps, field, marks })
+        Ok(Self { scene, view: *view, trajectories, speeds, seen, overlaps, aim, field, time: options.time, marks })
     }
 
     pub fn has_trajectories(&self) -> bool {
@@ -136,6 +100,12 @@ impl<'a> Panel<'a> {
     pub fn has_shadows(&self) -> bool {
         self.seen.iter().any(|s| !s.shadows.is_empty())
     }
+    pub fn has_aim(&self) -> bool {
+        !self.aim.is_empty()
+    }
+    pub fn has_scan(&self) -> bool {
+        self.scene.scan().is_some()
+    }
     pub fn has_marks(&self) -> bool {
         !self.marks.is_empty()
     }
@@ -145,23 +115,26 @@ impl<'a> Panel<'a> {
 
     /// What has to be in the picture.
     fn extent(&self) -> Option<Extent> {
-        let points = self
-            .scene
-            .starts()
-            .iter()
-            .chain(std::iter::once(&self.attractor()))
-            .map(|p| self.view.project(p))
-            .collect::<Vec<_>>();
+        let places = self.scene.starts().iter().map(|p| self.view.project(p)).chain([self.attractor(self.time)]);
         let paths = self.trajectories.iter().flat_map(|t| &t.points).map(|p| self.view.project(&p.position));
         let shapes = self
             .seen
             .iter()
-            .flat_map(|s| s.core.iter().chain(&s.shell).chain(&s.shadows).chain(&s.ghosts).flatten().copied());
-        Extent::around(points.into_iter().chain(paths).chain(shapes))
+            .flat_map(|s| {
+                let regions = s.core.iter().chain(&s.shell).map(|area| &area.ring);
+                regions.chain(&s.shadows).chain(&s.ghosts)
+            })
+            .flatten()
+            .copied();
+        let scan = self.scene.scan().into_iter().flat_map(|scan| {
+            let corner = Vector2::from_element(scan.radius());
+            scan.points().iter().map(|p| self.view.project(p)).flat_map(move |p| [p - corner, p + corner])
+        });
+        Extent::around(places.chain(paths).chain(shapes).chain(scan).chain(self.aim.iter().copied()))
     }
 
-    fn attractor(&self) -> Vector3<f64> {
-        self.scene.attractor()
+    fn attractor(&self, t: f64) -> Point2<f64> {
+        self.view.project(&self.scene.attractor_at(t).0)
     }
 
     /// Draws the panel; `named` if the horizontal axis has its numbers and its name here.
@@ -169,7 +142,8 @@ impl<'a> Panel<'a> {
         axes.grid(svg);
         svg.clipped(&format!("panel{index}"), axes, |svg| {
             self.draw_flow(svg, axes);
-            self.draw_obstacles(svg, axes);
+            self.draw_obstacles(svg, axes, index);
+            self.draw_aim(svg, axes);
             for t in self.trajectories {
                 self.draw_trajectory(svg, axes, t);
             }
@@ -177,7 +151,7 @@ impl<'a> Panel<'a> {
                 svg.circle(axes.pixel(&self.view.project(start)), 4.6, START);
             }
             self.draw_marks(svg, axes);
-            svg.star(axes.pixel(&self.view.project(&self.attractor())), 8.5, ATTRACTOR);
+            svg.star(axes.pixel(&self.attractor(self.time)), 8.5, ATTRACTOR);
         });
         let [x, y] = self.view.names();
         axes.frame(svg, named.then_some(&x), &y);
@@ -205,37 +179,56 @@ impl<'a> Panel<'a> {
         }
     }
 
-    fn draw_obstacles(&self, svg: &mut Svg, axes: &Axes) {
-        let draw =
-            |svg: &mut Svg, polygon: &Polygon, style| svg.path(polygon.iter().map(|p| axes.pixel(p)), true, style);
+    fn draw_obstacles(&self, svg: &mut Svg, axes: &Axes, index: usize) {
         for s in &self.seen {
-            for ghost in s.ghosts.iter().chain(&s.shadows) {
-                draw(svg, ghost, GHOST);
-            }
+            let ghosts = s.ghosts.iter().filter(|_| !s.shrinks);
+            ghosts.chain(&s.shadows).for_each(|ghost| svg.area(&[ring(ghost, axes)], GHOST));
         }
         for shell in self.seen.iter().filter_map(|s| s.shell.as_ref()) {
-            draw(svg, shell, SHELL);
+            svg.area(&rings(shell, axes), SHELL);
         }
-        for overlap in &self.overlaps {
-            draw(svg, overlap, OVERLAP);
+        for (n, (a, b)) in self.overlaps.iter().enumerate() {
+            let shell = |i: usize| self.seen.get(i).and_then(|s| s.shell.as_ref()).map(|area| rings(area, axes));
+            if let (Some(a), Some(b)) = (shell(*a), shell(*b)) {
+                svg.within(&format!("overlap{index}-{n}a"), &a, |svg| svg.area(&b, OVERLAP));
+                svg.within(&format!("overlap{index}-{n}b"), &b, |svg| svg.area(&a, OVERLAP_LINE));
+            }
+        }
+        if let Some(scan) = self.scene.scan() {
+            let points = || scan.points().iter().map(|p| axes.pixel(&self.view.project(p)));
+            points().for_each(|p| svg.circle(p, scan.radius() * axes.scale(), SCAN));
+            points().for_each(|p| svg.circle(p, 1.2, SCAN_POINT));
         }
         for s in &self.seen {
             if let Some(core) = &s.core {
-                draw(svg, core, if self.is_cut() { CUT_CORE } else { CORE });
+                svg.area(&rings(core, axes), if self.is_cut() { CUT_CORE } else { CORE });
             }
             if let Some(margin) = &s.margin {
-                draw(svg, margin, MARGIN);
+                svg.area(&[ring(&margin.ring, axes)], MARGIN);
             }
-            let track: Vec<_> = s.track.iter().map(|p| axes.pixel(p)).collect();
-            if let [.., from, tip] = track[..] {
-                svg.path(track.iter().copied(), false, TRACK);
-                svg.arrowhead(tip, &(tip - from), 8.0, r##"fill="#343a43""##);
+            for ghost in s.ghosts.iter().filter(|_| s.shrinks) {
+                svg.area(&[ring(ghost, axes)], GHOST_INSIDE);
+            }
+            draw_track(svg, axes, &s.track, TRACK, TRACK_HEAD);
+        }
+    }
+
+    /// The way of the attractor, and where on it it is at the marks.
+    fn draw_aim(&self, svg: &mut Svg, axes: &Axes) {
+        draw_track(svg, axes, &self.aim, ATTRACTOR_TRACK, ATTRACTOR_HEAD);
+        if self.has_aim() {
+            for t in &self.marks {
+                let p = axes.pixel(&self.attractor(*t));
+                svg.star(p, 6.0, ATTRACTOR_LATER);
+                svg.text(p + Vector2::new(0.0, 17.0), Anchor::Middle, SMALL, &format!("{t:.1} s"));
             }
         }
     }
 
     /// Moving obstacles and robots at the same times.
     fn draw_marks(&self, svg: &mut Svg, axes: &Axes) {
+        let star = axes.pixel(&self.attractor(self.time)) - Vector2::new(15.0, -3.5);
+        let mut labels = Labels(vec![star]);
         for (i, t) in self.marks.iter().enumerate() {
             let label = format!("{t:.1} s");
             for (seen, ghost) in self.seen.iter().filter_map(|s| Some((s, s.ghosts.get(i)?))) {
@@ -245,20 +238,20 @@ impl<'a> Panel<'a> {
                     .first()
                     .zip(seen.track.last())
                     .is_some_and(|(a, b)| (b.y - a.y).abs() > (b.x - a.x).abs());
-                let pixels = ghost.iter().map(|p| axes.pixel(p));
+                let pixels: Vec<_> = ghost.iter().map(|p| axes.pixel(p)).collect();
                 if upright {
-                    if let Some(p) = pixels.max_by(|a, b| a.x.total_cmp(&b.x)) {
-                        svg.text(p + Vector2::new(4.0, 3.5), Anchor::Start, SMALL, &label);
-                    }
-                } else if let Some(p) = pixels.max_by(|a, b| a.y.total_cmp(&b.y)) {
-                    svg.text(p + Vector2::new(0.0, 11.0), Anchor::Middle, SMALL, &label);
+                    let p = farthest(&pixels, &Vector2::x());
+                    labels.text(svg, p + Vector2::new(4.0, 3.5), Anchor::Start, &label);
+                } else {
+                    let p = farthest(&pixels, &Vector2::y());
+                    labels.text(svg, p + Vector2::new(0.0, 11.0), Anchor::Middle, &label);
                 }
             }
             for at in self.trajectories.iter().filter_map(|trajectory| trajectory.points.iter().find(|p| p.time >= *t))
             {
                 let p = axes.pixel(&self.view.project(&at.position));
                 svg.circle(p, 3.2, DOT);
-                svg.text(p + Vector2::new(7.0, 3.5), Anchor::Start, SMALL, &label);
+                labels.text(svg, p + Vector2::new(7.0, 3.5), Anchor::Start, &label);
             }
         }
     }
@@ -285,6 +278,61 @@ impl<'a> Panel<'a> {
     }
 }
 
+/// Where a closed line goes farthest in a direction; the middle of it where that is a side.
+fn farthest(ring: &[Point2<f64>], direction: &Vector2<f64>) -> Point2<f64> {
+    let along = |p: &Point2<f64>| p.coords.dot(direction);
+    let most = ring.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
+    let there: Vec<Point2<f64>> = ring.iter().filter(|p| along(p) > most - 0.5).copied().collect();
+    Extent::around(there).map_or(Point2::origin(), |e| nalgebra::center(&e.low, &e.high))
+}
+
+/// Small texts by their left ends, left out where something is already.
+struct Labels(Vec<Point2<f64>>);
+
+impl Labels {
+    fn text(&mut self, svg: &mut Svg, at: Point2<f64>, anchor: Anchor, text: &str) {
+        let width = text_width(text) * 0.85;
+        let left = match anchor {
+            Anchor::Start => at.x,
+            Anchor::Middle => at.x - width / 2.0,
+            Anchor::End => at.x - width,
+        };
+        let free = self.0.iter().all(|p| (p.x - left).abs() > width || (p.y - at.y).abs() > 9.0);
+        if free {
+            self.0.push(Point2::new(left, at.y));
+            svg.text(at, anchor, SMALL, text);
+        }
+    }
+}
+
+/// A dashed line with an arrowhead.
+fn draw_track(svg: &mut Svg, axes: &Axes, track: &[Point2<f64>], style: &str, head: &str) {
+    let track: Vec<_> = track.iter().map(|p| axes.pixel(p)).collect();
+    if let [.., from, tip] = track[..] {
+        svg.path(track.iter().copied(), false, style);
+        svg.arrowhead(tip, &(tip - from), 8.0, head);
+    }
+}
+
+/// A closed line on the page.
+fn ring(polygon: &[Point2<f64>], axes: &Axes) -> Vec<Point2<f64>> {
+    let closed: Vec<_> = polygon.iter().chain(polygon.first()).map(|p| axes.pixel(p)).collect();
+    let mut ring = thinned(&closed, 0.03);
+    ring.pop();
+    ring
+}
+
+/// A region on the page: what is outside of a line ends beyond the axes, where nothing is seen.
+fn rings(area: &Area, axes: &Axes) -> Vec<Vec<Point2<f64>>> {
+    let mut rings = vec![ring(&area.ring, axes)];
+    if area.outside {
+        let room = Vector2::new(10.0, 10.0);
+        let (low, high) = (axes.corner - room, axes.end() + room);
+        rings.push(vec![low, Point2::new(high.x, low.y), high, Point2::new(low.x, high.y)]);
+    }
+    rings
+}
+
 /// Without points that are within `tolerance` pixels of the line through their neighbours.
 fn thinned(points: &[Point2<f64>], tolerance: f64) -> Vec<Point2<f64>> {
     let Some((&first, &last)) = points.first().zip(points.last()) else {
@@ -303,41 +351,6 @@ fn thinned(points: &[Point2<f64>], tolerance: f64) -> Vec<Point2<f64>> {
     }
     kept.push(last);
     kept
-}
-
-fn see(o: &PosedObstacle<'_>, view: &View, time: f64, until: f64, marks: &[f64]) -> Seen {
-    let soft = o.obstacle.is_soft();
-    let inflated = o.obstacle.margin().max() > 1.0;
-    let mut seen = Seen {
-        core: section(o, Surface::Core, view),
-        margin: inflated.then(|| section(o, Surface::Margin, view)).flatten(),
-        shell: soft.then(|| section(o, Surface::Shell, view)).flatten(),
-        shadows: Vec::new(),
-        track: Vec::new(),
-        ghosts: Vec::new(),
-    };
-    if view.plane.is_some() {
-        seen.shadows = std::iter::once(Surface::Core)
-            .chain(soft.then_some(Surface::Shell))
-            .map(|surface| shadow(o, surface, view))
-            .collect();
-    }
-    if o.obstacle.is_moving() && until > time {
-        let at = |share: f64| o.obstacle.at(time + (until - time) * share);
-        let track: Vec<_> = (0..=120).map(|i| view.project(&at(f64::from(i) / 120.0).pose.center)).collect();
-        if track.windows(2).any(|w| w[0] != w[1]) {
-            seen.track = track;
-            seen.track.dedup();
-        }
-        seen.ghosts = marks.iter().filter_map(|t| outline_at(o, *t, view)).collect();
-    }
-    seen
-}
-
-/// The core's outline at another time: in 3-D its shadow, for the plane of the section may miss it.
-fn outline_at(o: &PosedObstacle<'_>, time: f64, view: &View) -> Option<Polygon> {
-    let then = o.obstacle.at(time);
-    if view.plane.is_some() { Some(shadow(&then, Surface::Core, view)) } else { section(&then, Surface::Core, view) }
 }
 
 fn field<const D: usize>(scene: &Scene, time: f64) -> Result<Field, ConvertError> {

@@ -5,12 +5,12 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use pliant_core::{Ageing, Limits, RANGE};
+use pliant_core::{Ageing, Guard, Limits, RANGE};
 use toml::Spanned;
 
 use super::error::{SceneError, SceneErrorKind as Kind, Source};
 use super::file::{
-    AgeingFile, DsFile, GoalFile, LimitsFile, MethodFile, ModulationFile, Number, Numbers, StartFile, SteeringFile,
+    AgeingFile, DsFile, GoalFile, GuardFile, LimitsFile, MethodFile, ModulationFile, Number, Numbers, SteeringFile,
 };
 use super::motion::point;
 use super::obstacle::SceneObstacle;
@@ -18,6 +18,9 @@ use super::{Goal, MAX_OBSTACLES, Method, Modulation, MotionSource, Scene, Steeri
 use crate::model::ModelFile;
 
 mod obstacle;
+mod places;
+mod shape;
+mod track;
 
 /// How a model's text is got, by its path relative to the scene: where it was found, and what it says.
 type ReadModel<'a> = &'a dyn Fn(&Path) -> io::Result<(PathBuf, String)>;
@@ -30,20 +33,24 @@ pub(super) fn scene(name: &str, text: &str, read_model: ReadModel<'_>) -> Result
     let modulation = check.modulation(&file.modulation)?;
     let limits = check.limits(&file.limits)?;
     let ageing = check.ageing(&file.ageing)?;
+    let guard = check.guard(&file.guard)?;
     let goal = check.goal(&file.goal)?;
+    let target = check.attractor(file.attractor.as_ref(), motion.attractor(), goal.timeout)?;
     if let Some(extra) = file.obstacle.get(MAX_OBSTACLES) {
         let problem = format!("is there {} times", file.obstacle.len());
         return Err(check.error(Kind::Value, "obstacle", extra.span(), problem));
     }
     let mut obstacles: Vec<SceneObstacle> = Vec::with_capacity(file.obstacle.len());
     for (id, o) in (0..).zip(&file.obstacle) {
-        obstacles.push(check.obstacle(id, o, &obstacles, &motion.attractor(), goal.timeout)?);
+        obstacles.push(check.obstacle(id, o, &obstacles, &target, goal.timeout)?);
     }
+    let scan = file.scan.as_ref().map(|scan| check.scan(scan, &target)).transpose()?;
     if file.start.is_empty() {
         let problem = "is missing, and there is no default for it";
         return Err(check.error(Kind::Missing, "start", 0..0, problem));
     }
-    let starts = file.start.iter().map(|s| check.start(s.get_ref(), &obstacles)).collect::<Result<_, _>>()?;
+    let start = |s: &Spanned<_>| check.start(s.get_ref(), &obstacles, scan.as_ref());
+    let starts = file.start.iter().map(start).collect::<Result<_, _>>()?;
     let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
     Ok(Scene {
         name: stem.unwrap_or_else(|| name.to_owned()),
@@ -52,9 +59,12 @@ pub(super) fn scene(name: &str, text: &str, read_model: ReadModel<'_>) -> Result
         modulation,
         limits,
         ageing,
+        guard,
         goal,
+        target,
         starts,
         obstacles,
+        scan,
     })
 }
 
@@ -232,14 +242,14 @@ impl Check<'_> {
         })
     }
 
-    fn start(&self, start: &StartFile, obstacles: &[SceneObstacle]) -> Result<Vector3<f64>, SceneError> {
-        let position = self.point(&start.position, "start.position")?;
-        match obstacles.iter().find(|o| o.at(0.0).gamma(&position) <= 1.0) {
-            None => Ok(position),
-            Some(o) => {
-                let problem = format!("is inside the hard core of obstacle \"{}\"", o.name());
-                Err(self.error(Kind::Geometry, "start.position", start.position.span(), problem))
-            }
+    fn guard(&self, file: &GuardFile) -> Result<Option<Guard<f64>>, SceneError> {
+        let off = file.enabled.as_ref().is_some_and(|enabled| !*enabled.get_ref());
+        if let (Some(approach), true) = (&file.approach, off) {
+            let problem = "is there beside `enabled = false`";
+            return Err(self.error(Kind::Conflict, "guard.approach", approach.span(), problem));
         }
+        let approach =
+            self.optional(&file.approach, "guard.approach", Above(0.0), 1.0, Guard::<f64>::default().approach)?;
+        Ok((!off).then_some(Guard { approach }))
     }
 }

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use pliant_core::{
-    Ageing, Controller, Limits, Matrix, Motion, Obstacle, ObstacleError, ObstacleSpec, RANGE, Scalar, Settings,
-    SteeringPolicy, Vector,
+    Ageing, Controller, Guard, Limits, Matrix, Motion, Obstacle, ObstacleError, ObstacleSpec, RANGE, Scalar, Scan,
+    ScanError, Settings, SteeringPolicy, Vector,
 };
 
 use super::{Method, PosedObstacle, Scene, Steering};
@@ -30,6 +30,12 @@ pub enum ConvertError {
     /// The core refuses the motion.
     #[error("the motion is refused: {0}")]
     Motion(String),
+    /// The core refuses the scan.
+    #[error("the scan has an unusable {0:?}")]
+    Scan(ScanError),
+    /// The attractor has left the range, long after the scene's timeout.
+    #[error("the attractor is beyond +-1000 m")]
+    Attractor,
     /// More obstacles than the table that was asked for has room for.
     #[error("there is room for {0} obstacles, and the scene has more")]
     TableFull(usize),
@@ -74,6 +80,7 @@ impl Scene {
                 growth: number(self.ageing.growth),
                 hold: number(self.ageing.hold),
             },
+            guard: self.guard.map(|guard| Guard { approach: number(guard.approach) }),
         }
     }
 
@@ -98,15 +105,33 @@ impl Scene {
         self.obstacles_at(t).map(|o| Ok((o.obstacle.id, o.to_core()?))).collect()
     }
 
-    /// A controller with the scene's motion, settings and obstacles as they are at scene time `t`, s.
+    /// The scan; none if the scene has none.
     ///
     /// # Errors
-    /// As [`Scene::core_obstacles`], or a table that is too small.
+    /// Another dimension than the scene's.
+    pub fn core_scan<S: Scalar, const D: usize>(&self) -> Result<Option<Scan<S, D>>, ConvertError> {
+        self.in_dimension::<D>()?;
+        self.scan.as_ref().map(|scan| scan.to_core().map_err(ConvertError::Scan)).transpose()
+    }
+
+    /// A controller with the scene's motion, settings, obstacles and scan as they are at scene time `t`, s.
+    ///
+    /// # Errors
+    /// As [`Scene::core_obstacles`], a time at which the attractor has left the range, or a table that is too small.
     pub fn controller<S: Scalar, const D: usize, const CAP: usize>(
         &self,
         t: f64,
     ) -> Result<Controller<S, D, CAP>, ConvertError> {
         let mut controller = Controller::new(self.motion()?, self.settings());
+        if self.attractor_moves() {
+            let (position, velocity) = self.attractor_at(t);
+            if !controller.aim(&vector(&position), &vector(&velocity)) {
+                return Err(ConvertError::Attractor);
+            }
+        }
+        if let Some(scan) = self.core_scan()? {
+            controller.set_scan(scan, S::zero());
+        }
         for (id, obstacle) in self.core_obstacles(t)? {
             controller.upsert(id, obstacle, S::zero()).map_err(|_| ConvertError::TableFull(CAP))?;
         }
@@ -116,23 +141,27 @@ impl Scene {
 
 impl PosedObstacle<'_> {
     /// What the core makes an obstacle from. In 2-D the z of everything is left out.
-    pub fn spec<S: Scalar, const D: usize>(&self) -> ObstacleSpec<S, D> {
+    ///
+    /// # Errors
+    /// None for an obstacle of a checked scene, asked for in the scene's dimension.
+    pub fn spec<S: Scalar, const D: usize>(&self) -> Result<ObstacleSpec<S, D>, ConvertError> {
         let o = self.obstacle;
         let rotation = self.pose.rotation.to_rotation_matrix();
         let spin = self.pose.angular_velocity.cross_matrix();
         let square =
             |m: &nalgebra::Matrix3<f64>| Matrix::from_fn(|i, j| m.get((i, j)).map_or(S::zero(), |x| S::from_f64(*x)));
-        ObstacleSpec {
+        Ok(ObstacleSpec {
             center: vector(&self.pose.center),
             rotation: square(rotation.matrix()),
-            axes: vector(&o.axes()),
+            shape: self.shape.to_core().ok_or_else(|| self.refused(ObstacleError::Vertices))?,
+            wall: o.wall,
             soft_ratio: vector(&o.soft_ratio),
-            curvature: o.curvature,
             margin: vector(&o.margin),
             reference: vector(&o.reference),
             velocity: vector(&self.pose.velocity),
             spin: square(&spin),
-        }
+            growth: S::from_f64(self.growth),
+        })
     }
 
     /// The core's obstacle.
@@ -140,7 +169,11 @@ impl PosedObstacle<'_> {
     /// # Errors
     /// It has left the range of +-1000 m.
     pub fn to_core<S: Scalar, const D: usize>(&self) -> Result<Obstacle<S, D>, ConvertError> {
-        Obstacle::new(self.spec()).map_err(|error| ConvertError::Obstacle { name: self.obstacle.name.clone(), error })
+        Obstacle::new(self.spec()?).map_err(|error| self.refused(error))
+    }
+
+    fn refused(&self, error: ObstacleError) -> ConvertError {
+        ConvertError::Obstacle { name: self.obstacle.name.clone(), error }
     }
 }
 

@@ -10,6 +10,8 @@ use toml::Spanned;
 pub(super) type Number = Spanned<f64>;
 /// An array of numbers and where it and each of them stand.
 pub(super) type Numbers = Spanned<Vec<Number>>;
+/// An array of such arrays.
+pub(super) type Rows = Spanned<Vec<Numbers>>;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "the tables of a scene")]
@@ -22,7 +24,11 @@ pub(super) struct SceneFile {
     #[serde(default)]
     pub ageing: AgeingFile,
     #[serde(default)]
+    pub guard: GuardFile,
+    #[serde(default)]
     pub goal: GoalFile,
+    pub attractor: Option<Spanned<AttractorFile>>,
+    pub scan: Option<ScanFile>,
     #[serde(default)]
     pub start: Vec<Spanned<StartFile>>,
     #[serde(default)]
@@ -84,6 +90,27 @@ pub(super) struct AgeingFile {
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, expecting = "a table")]
+pub(super) struct GuardFile {
+    pub enabled: Option<Spanned<bool>>,
+    pub approach: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub(super) struct AttractorFile {
+    pub velocity: Option<Numbers>,
+    pub path: Option<Rows>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub(super) struct ScanFile {
+    pub points: Rows,
+    pub radius: Number,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub(super) struct GoalFile {
     pub tolerance: Option<Number>,
     pub timeout: Option<Number>,
@@ -99,7 +126,8 @@ pub(super) struct StartFile {
 #[serde(deny_unknown_fields, expecting = "a table")]
 pub(super) struct ObstacleFile {
     pub name: Spanned<String>,
-    pub shape: ShapeFile,
+    pub shape: Spanned<ShapeFile>,
+    pub wall: Option<bool>,
     pub center: Option<Numbers>,
     pub angle: Option<Number>,
     pub rotation: Option<Numbers>,
@@ -110,14 +138,21 @@ pub(super) struct ObstacleFile {
     pub margin: Option<Numbers>,
     pub velocity: Option<Numbers>,
     pub angular_velocity: Option<Spanned<Turning>>,
+    pub growth: Option<Number>,
     pub reference: Option<Numbers>,
-    pub path: Option<Spanned<Vec<Numbers>>>,
+    pub path: Option<Rows>,
 }
 
 #[derive(Deserialize)]
-#[serde(rename_all = "kebab-case", expecting = "a shape, such as { ellipsoid = [0.04, 0.04] }")]
-pub(super) enum ShapeFile {
-    Ellipsoid(Numbers),
+#[serde(deny_unknown_fields, expecting = "a shape, such as { ellipsoid = [0.04, 0.04] }")]
+pub(super) struct ShapeFile {
+    pub ellipsoid: Option<Numbers>,
+    #[serde(rename = "box")]
+    pub cuboid: Option<Numbers>,
+    pub cylinder: Option<Numbers>,
+    pub capsule: Option<Numbers>,
+    pub polygon: Option<Rows>,
+    pub rounding: Option<Number>,
 }
 
 /// An angular velocity: one number in the plane, three in space.

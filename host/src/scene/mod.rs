@@ -25,19 +25,36 @@
 //! tolerance = 0.01                     # m
 //! timeout = 30.0                       # s
 //!
+//! [guard]                              # likewise
+//! approach = 0.02                      # share of the way to a core that a tick may use up; or enabled = false
+//!
+//! [attractor]                          # may be left out: then the goal stays where the motion has it
+//! velocity = [0.0, 0.0]                # m/s
+//! # path = [[0.0, 0.0, 0.0], [4.0, 0.1, 0.0]] # t, x, y: where it is over time, instead of a velocity
+//!
+//! [scan]                               # may be left out
+//! points = [[0.1, 0.6], [0.1, 0.62]]   # m, up to 128
+//! radius = 0.02                        # m, what each is kept away from by
+//!
 //! [[start]]                            # at least one
 //! position = [0.37, 0.41]              # m
 //!
 //! [[obstacle]]                         # up to 64
 //! name = "foam cylinder"
-//! shape = { ellipsoid = [0.04, 0.04] } # hard semi-axes, m
+//! shape = { ellipsoid = [0.04, 0.04] } # hard semi-axes, m; or one of
+//! #       { box = [0.1, 0.05], rounding = 0.01 }            half sides
+//! #       { polygon = [[0.1, 0.0], [-0.1, 0.1], [-0.1, -0.1]] }  2-D: corners, in the obstacle's frame
+//! #       { cylinder = [0.05, 0.2], rounding = 0.01 }       3-D: radius and half length, along z
+//! #       { capsule = [0.05, 0.2] }                         3-D: likewise, plus a radius at both ends
+//! wall = false                         # true: the shape is the free space
 //! center = [0.20, 0.21]                # m
 //! angle = 0.0                          # rad; in 3-D: rotation = [w, x, y, z]
 //! stiffness = 1.6487                   # or soft = [0.06, 0.06], or layer = 0.02; none of them: rigid
-//! curvature = 1                        # 1 (ellipsoid) to 8 (nearly a box)
+//! curvature = 1                        # of an ellipsoid: 1 to 8 (nearly a box)
 //! margin = [1.0, 1.0]                  # safety factors
 //! velocity = [0.0, 0.0]                # m/s
 //! angular_velocity = 0.0               # rad/s; in 3-D [x, y, z]
+//! growth = 0.0                         # m/s on each half extent; below zero it shrinks
 //! reference = [0.0, 0.0]               # m, in the obstacle's frame
 //! # path = [[0.0, 0.2, 0.21], [4.0, 0.3, 0.2]] # t, x, y: the centre over time, instead of a velocity
 //! ```
@@ -52,20 +69,27 @@ mod fields;
 mod file;
 mod motion;
 mod obstacle;
+mod scan;
+mod shape;
 mod syntax;
 #[cfg(test)]
 mod tests;
+mod track;
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use pliant_core::{Ageing, Limits};
+use pliant_core::{Ageing, Guard, Limits};
 
 pub use convert::ConvertError;
 pub use error::{SceneError, SceneErrorKind};
 pub use motion::MotionSource;
-pub use obstacle::{Pose, PosedObstacle, SceneObstacle, Shape};
+pub use obstacle::{Pose, PosedObstacle, SceneObstacle};
+pub use scan::SceneScan;
+pub use shape::Shape;
+
+use track::Track;
 
 /// Most obstacles a scene may have.
 pub const MAX_OBSTACLES: usize = 64;
@@ -108,7 +132,7 @@ pub struct Modulation {
 /// When a run has arrived, and when it has failed to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
-    /// Distance to the attractor that counts as there, m.
+    /// Distance to the attractor, where it then is, that counts as there, m.
     pub tolerance: f64,
     /// Time after which a run is given up, s.
     pub timeout: f64,
@@ -125,9 +149,12 @@ pub struct Scene {
     modulation: Modulation,
     limits: Limits<f64>,
     ageing: Ageing<f64>,
+    guard: Option<Guard<f64>>,
     goal: Goal,
+    target: Track,
     starts: Vec<Vector3<f64>>,
     obstacles: Vec<SceneObstacle>,
+    scan: Option<SceneScan>,
 }
 
 impl Scene {
@@ -181,9 +208,17 @@ impl Scene {
     pub fn motion_source(&self) -> &MotionSource {
         &self.motion
     }
-    /// Where the motion ends, m.
+    /// Where the motion ends at time 0, m.
     pub fn attractor(&self) -> Vector3<f64> {
-        self.motion.attractor()
+        self.attractor_at(0.0).0
+    }
+    /// Where the motion ends at scene time `t` (s), m, and how fast that moves, m/s.
+    pub fn attractor_at(&self, t: f64) -> (Vector3<f64>, Vector3<f64>) {
+        self.target.at(t)
+    }
+    /// Is the attractor ever elsewhere than where the motion has it?
+    pub fn attractor_moves(&self) -> bool {
+        self.target.moves() || self.attractor() != self.motion.attractor()
     }
     /// How obstacles bend the motion.
     pub fn modulation(&self) -> &Modulation {
@@ -197,6 +232,10 @@ impl Scene {
     pub fn ageing(&self) -> &Ageing<f64> {
         &self.ageing
     }
+    /// What keeps the robot out of hard cores whatever the flow says; none if it is off.
+    pub fn guard(&self) -> Option<&Guard<f64>> {
+        self.guard.as_ref()
+    }
     /// When a run has arrived.
     pub fn goal(&self) -> &Goal {
         &self.goal
@@ -208,6 +247,10 @@ impl Scene {
     /// The obstacles in the order of the file; the place in it is an obstacle's id.
     pub fn obstacles(&self) -> &[SceneObstacle] {
         &self.obstacles
+    }
+    /// Range points that are in the way as well.
+    pub fn scan(&self) -> Option<&SceneScan> {
+        self.scan.as_ref()
     }
     /// The obstacles as they are at scene time `t`, s.
     pub fn obstacles_at(&self, t: f64) -> impl ExactSizeIterator<Item = PosedObstacle<'_>> {

@@ -1,42 +1,27 @@
 //! An obstacle of a scene: what it is, and where it is at which time.
 
 use nalgebra::{UnitQuaternion, Vector3};
+use pliant_core::{Obstacle, ObstacleSpec};
 
-/// What an obstacle's hard core looks like.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Shape {
-    /// An ellipsoid, or with a curvature above 1 a rounded box.
-    Ellipsoid {
-        /// Hard semi-axes, m.
-        axes: Vector3<f64>,
-    },
-}
-
-/// How the centre moves.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Track {
-    Straight {
-        from: Vector3<f64>,
-        velocity: Vector3<f64>,
-    },
-    /// Time and centre, by increasing time, at least one.
-    Path(Vec<(f64, Vector3<f64>)>),
-}
+use super::convert::vector;
+use super::shape::Shape;
+use super::track::Track;
 
 /// An obstacle with its motion over scene time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneObstacle {
     pub(super) id: u16,
     pub(super) name: String,
+    pub(super) dimension: usize,
     pub(super) shape: Shape,
+    pub(super) wall: bool,
     pub(super) soft_ratio: Vector3<f64>,
-    pub(super) curvature: u8,
     pub(super) margin: Vector3<f64>,
     pub(super) reference: Vector3<f64>,
     pub(super) track: Track,
     pub(super) rotation: UnitQuaternion<f64>,
     pub(super) angular_velocity: Vector3<f64>,
+    pub(super) growth: f64,
 }
 
 /// Where an obstacle is and how it moves.
@@ -53,12 +38,25 @@ pub struct Pose {
 }
 
 /// An obstacle at one time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PosedObstacle<'a> {
     /// What it is.
     pub obstacle: &'a SceneObstacle,
     /// Where it is.
     pub pose: Pose,
+    /// Its hard core as large as it is then.
+    pub shape: Shape,
+    /// How fast each half extent becomes longer, m/s.
+    pub growth: f64,
+    /// None if it has left the range.
+    body: Option<Body>,
+}
+
+/// The core's obstacle in the scene's dimension.
+#[derive(Clone, Debug, PartialEq)]
+enum Body {
+    Planar(Box<Obstacle<f64, 2>>),
+    Spatial(Box<Obstacle<f64, 3>>),
 }
 
 impl SceneObstacle {
@@ -70,17 +68,15 @@ impl SceneObstacle {
     pub fn name(&self) -> &str {
         &self.name
     }
-    /// Its hard core.
+    /// Its hard core at time 0.
     pub fn shape(&self) -> &Shape {
         &self.shape
     }
-    /// Its hard semi-axes, m; for shapes that have none, those of a box around it.
-    pub fn axes(&self) -> Vector3<f64> {
-        match &self.shape {
-            Shape::Ellipsoid { axes } => *axes,
-        }
+    /// Is it what is around its shape, and the shape free?
+    pub fn is_wall(&self) -> bool {
+        self.wall
     }
-    /// rho = b/a, soft over hard semi-axis; ones for a rigid obstacle.
+    /// rho: the soft layer's surface over the hard one (of a wall, the inverse) along each axis; ones for a rigid obstacle.
     pub fn soft_ratio(&self) -> Vector3<f64> {
         self.soft_ratio
     }
@@ -88,11 +84,7 @@ impl SceneObstacle {
     pub fn is_soft(&self) -> bool {
         self.soft_ratio.iter().any(|rho| *rho > 1.0)
     }
-    /// p
-    pub fn curvature(&self) -> u8 {
-        self.curvature
-    }
-    /// Safety factors eta on the hard semi-axes.
+    /// Safety factors eta along each axis.
     pub fn margin(&self) -> Vector3<f64> {
         self.margin
     }
@@ -100,60 +92,87 @@ impl SceneObstacle {
     pub fn reference(&self) -> Vector3<f64> {
         self.reference
     }
-    /// Does it ever move?
+    /// How fast each half extent becomes longer at first (below zero: shorter), m/s.
+    pub fn growth(&self) -> f64 {
+        self.growth
+    }
+    /// Does it ever move, turn or grow?
     pub fn is_moving(&self) -> bool {
-        let travels = match &self.track {
-            Track::Straight { velocity, .. } => *velocity != Vector3::zeros(),
-            Track::Path(points) => points.windows(2).any(|w| w[0].1 != w[1].1),
-        };
-        travels || self.angular_velocity != Vector3::zeros()
+        self.track.moves() || self.angular_velocity != Vector3::zeros() || self.growth != 0.0
     }
 
     /// The obstacle as it is at scene time `t`, s. A path is followed in straight lines; before its first point and after its last the
-    /// obstacle is at rest there.
+    /// obstacle is at rest there. One that shrinks ends very small.
     pub fn at(&self, t: f64) -> PosedObstacle<'_> {
-        let (center, velocity) = match &self.track {
-            Track::Straight { from, velocity } => (from + velocity * t, *velocity),
-            Track::Path(points) => along(points, t),
-        };
+        let (center, velocity) = self.track.at(t);
         let turned = UnitQuaternion::from_scaled_axis(self.angular_velocity * t);
-        PosedObstacle {
+        let by = self.growth * t;
+        let least = if self.growth < 0.0 { self.shape.smallest() } else { by };
+        let growth = if by < least { 0.0 } else { self.growth };
+        let mut posed = PosedObstacle {
             obstacle: self,
             pose: Pose { center, rotation: turned * self.rotation, velocity, angular_velocity: self.angular_velocity },
-        }
+            shape: self.shape.grown(by.max(least)),
+            growth,
+            body: None,
+        };
+        posed.body = posed.body(&self.margin);
+        posed
     }
 }
 
 impl PosedObstacle<'_> {
-    /// Gamma at `x`, safety factors included: at most 1 in the hard core.
+    /// Gamma at `x`, safety factors included: at most 1 in the hard core. Infinite for one that has left the range.
     pub fn gamma(&self, x: &Vector3<f64>) -> f64 {
-        self.level(x, &self.obstacle.margin)
+        match &self.body {
+            Some(Body::Planar(o)) => o.gamma(&vector(x)),
+            Some(Body::Spatial(o)) => o.gamma(x),
+            None => f64::INFINITY,
+        }
     }
 
     /// Gamma_k at `x`: at most 1 in the soft layer and what is within it.
     pub fn gamma_soft(&self, x: &Vector3<f64>) -> f64 {
-        self.level(x, &self.obstacle.soft_ratio)
-    }
-
-    fn level(&self, x: &Vector3<f64>, scale: &Vector3<f64>) -> f64 {
-        let q = self.pose.rotation.inverse_transform_vector(&(x - self.pose.center));
-        level(&q, &self.obstacle.axes().component_mul(scale), self.obstacle.curvature)
-    }
-}
-
-/// sum_i |q_i / a_i|^2p over the axes there are.
-pub(super) fn level(q: &Vector3<f64>, axes: &Vector3<f64>, p: u8) -> f64 {
-    q.iter().zip(axes.iter()).filter(|(_, a)| **a > 0.0).map(|(q, a)| (q / a).powi(2 * i32::from(p))).sum()
-}
-
-fn along(points: &[(f64, Vector3<f64>)], t: f64) -> (Vector3<f64>, Vector3<f64>) {
-    let after = points.partition_point(|(time, _)| *time <= t);
-    match (after.checked_sub(1).and_then(|i| points.get(i)), points.get(after)) {
-        (Some((t0, a)), Some((t1, b))) => {
-            let velocity = (b - a) / (t1 - t0);
-            (a + velocity * (t - t0), velocity)
+        match &self.body {
+            Some(Body::Planar(o)) => o.gamma_soft(&vector(x)),
+            Some(Body::Spatial(o)) => o.gamma_soft(x),
+            None => f64::INFINITY,
         }
-        (Some((_, only)), None) | (None, Some((_, only))) => (*only, Vector3::zeros()),
-        (None, None) => (Vector3::zeros(), Vector3::zeros()),
+    }
+
+    /// The point of the hard surface, safety factors included, that a ray from the centre meets, m. `direction` is in the world's frame and
+    /// not zero.
+    pub fn surface(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+        match &self.body {
+            Some(Body::Planar(o)) => o.surface(&vector(direction)).push(0.0),
+            Some(Body::Spatial(o)) => o.surface(direction),
+            None => self.pose.center,
+        }
+    }
+
+    /// The same for the end of the soft layer.
+    pub fn soft_surface(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+        match &self.body {
+            Some(Body::Planar(o)) => o.soft_surface(&vector(direction)).push(0.0),
+            Some(Body::Spatial(o)) => o.soft_surface(direction),
+            None => self.pose.center,
+        }
+    }
+
+    /// The same obstacle without its safety factors.
+    pub fn without_margin(&self) -> Self {
+        let ones = self.obstacle.margin.map(|_| 1.0);
+        Self { body: self.body(&ones), ..self.clone() }
+    }
+
+    fn body(&self, margin: &Vector3<f64>) -> Option<Body> {
+        Some(match self.obstacle.dimension {
+            2 => Body::Planar(Box::new(self.solid(margin)?)),
+            _ => Body::Spatial(Box::new(self.solid(margin)?)),
+        })
+    }
+
+    fn solid<const D: usize>(&self, margin: &Vector3<f64>) -> Option<Obstacle<f64, D>> {
+        Obstacle::new(ObstacleSpec { margin: vector(margin), ..self.spec().ok()? }).ok()
     }
 }

@@ -7,7 +7,7 @@ use pliant_protocol::{ToDevice, checksum};
 use super::{Latency, stepped, timed};
 use crate::bridge::session::Received;
 use crate::bridge::{BridgeError, Session, wire};
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneScan};
 
 /// How often obstacles are reported, in ticks: a camera's 30 Hz.
 pub(super) const PERCEPTION_TICKS: u64 = 33;
@@ -53,9 +53,9 @@ pub struct Run {
     pub missed: u64,
     /// Milliseconds in which this host came too late to send a state in time.
     pub host_late: u64,
-    /// Least Gamma at any time, by the scene's true geometry in f64; infinite without obstacles.
+    /// Least Gamma at any time, by the scene's true geometry in f64; infinite without obstacles and scan.
     pub min_gamma: f64,
-    /// Whose it is.
+    /// Whose it is: an obstacle's name, or [`SceneScan::NAME`].
     pub nearest: Option<String>,
     /// s; none if the goal was not reached.
     pub time_to_goal: Option<f64>,
@@ -154,13 +154,20 @@ pub fn prepare(session: &mut Session, scene: &Scene) -> Result<(), BridgeError> 
     session.request("the settings", &ToDevice::Configure(wire::settings(scene)))
 }
 
-/// Every obstacle of the scene at time `t`, as messages stamped with the host's clock, us.
-pub(super) fn sightings(scene: &Scene, t: f64, stamp: u64) -> impl Iterator<Item = ToDevice> + '_ {
-    scene.obstacles_at(t).map(move |o| ToDevice::Upsert {
-        id: o.obstacle.id(),
-        stamp,
-        obstacle: wire::obstacle(&o, scene.dimension()),
-    })
+/// What is seen of the scene at time `t`, and what that is: every obstacle, the scan, and the attractor if it moves, as messages stamped
+/// with the host's clock, us.
+///
+/// # Errors
+/// An obstacle cannot be sent; one of a checked scene always can.
+pub(super) fn sightings(scene: &Scene, t: f64, stamp: u64) -> Result<Vec<(&'static str, ToDevice)>, BridgeError> {
+    let mut seen = Vec::with_capacity(scene.obstacles().len() + 1);
+    for o in scene.obstacles_at(t) {
+        let obstacle = wire::obstacle(&o, scene.dimension())?;
+        seen.push(("an obstacle", ToDevice::Upsert { id: o.obstacle.id(), stamp, obstacle }));
+    }
+    seen.extend(wire::scan(scene, stamp).map(|piece| ("the scan", piece)));
+    seen.extend(wire::aim(scene, t, stamp).map(|aim| ("the attractor", aim)));
+    Ok(seen)
 }
 
 /// A run as it goes on.
@@ -215,7 +222,10 @@ impl<'a> Log<'a> {
                 (self.run.min_gamma, self.run.nearest) = (gamma, Some(o.obstacle.name().into()));
             }
         }
-        let arrived = self.distance(&position) <= self.scene.goal().tolerance;
+        if let Some(gamma) = self.scene.scan().map(|s| s.gamma(&position)).filter(|gamma| *gamma < self.run.min_gamma) {
+            (self.run.min_gamma, self.run.nearest) = (gamma, Some(SceneScan::NAME.into()));
+        }
+        let arrived = self.distance(time, &position) <= self.scene.goal().tolerance;
         if self.seen.is_multiple_of(KEPT_TICKS) || arrived {
             self.run.path.push(PathPoint { time, position, velocity, region });
         }
@@ -226,8 +236,9 @@ impl<'a> Log<'a> {
         arrived
     }
 
-    pub(super) fn distance(&self, position: &Vector3<f64>) -> f64 {
-        (position - self.scene.attractor()).norm()
+    /// How far it is at this time from where the attractor then is, m.
+    pub(super) fn distance(&self, time: f64, position: &Vector3<f64>) -> f64 {
+        (position - self.scene.attractor_at(time).0).norm()
     }
 
     pub(super) fn missed(&mut self, ticks: u64) {

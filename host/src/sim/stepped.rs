@@ -31,10 +31,10 @@ pub(super) fn drive(
             break;
         }
         if u64::is_multiple_of(tick, PERCEPTION_TICKS) {
-            for sighting in sightings(scene, time, *clock) {
-                session.request("an obstacle", &sighting)?;
+            for (what, sighting) in sightings(scene, time, *clock)? {
+                session.request(what, &sighting)?;
             }
-            watch(time, log.distance(&robot.position));
+            watch(time, log.distance(time, &robot.position));
         }
         let sent = Instant::now();
         let command = session.step(*clock, wire::vector(&robot.position))?;

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use nalgebra::Vector3;
 use pliant_protocol::ToDevice;
-use pliant_protocol::message::{Region, TickMode};
+use pliant_protocol::message::{DeviceError, Region, TickMode};
 
 use super::PointRobot;
 use super::run::{Log, PERCEPTION_TICKS, RunOptions, TICK, sightings};
@@ -37,8 +37,8 @@ pub(super) fn drive(
     let patience = options.duration.unwrap_or(scene.goal().timeout);
     let state_ticks = if options.slow_link { SLOW_TICKS } else { 1 };
     session.request("clear", &ToDevice::Clear)?;
-    for sighting in sightings(scene, 0.0, *clock) {
-        session.request("an obstacle", &sighting)?;
+    for (what, sighting) in sightings(scene, 0.0, *clock)? {
+        session.request(what, &sighting)?;
     }
     session.request("arm", &ToDevice::Arm { tick: TickMode::Timed })?;
     let missed = session.statistics()?.missed;
@@ -53,10 +53,10 @@ pub(super) fn drive(
             break;
         }
         if u64::is_multiple_of(tick, PERCEPTION_TICKS) {
-            for sighting in sightings(scene, time, *clock) {
+            for (_, sighting) in sightings(scene, time, *clock)? {
                 session.send(&sighting)?;
             }
-            watch(time, log.distance(&robot.position));
+            watch(time, log.distance(time, &robot.position));
         }
         if u64::is_multiple_of(tick, state_ticks) {
             let state = ToDevice::State { stamp: *clock, position: wire::vector(&robot.position) };
@@ -93,6 +93,8 @@ pub(super) fn drive(
                     wanted = Vector3::from(command.velocity.map(f64::from));
                     region = command.region;
                 }
+                // A piece was lost on the way: the scan before it stays, and the next one comes soon.
+                Some(Event::Refused(DeviceError::Scan(_))) => {}
                 Some(Event::Refused(error)) => {
                     let device = session.device().into();
                     return Err(BridgeError::Refused { device, what: "the run".into(), error });

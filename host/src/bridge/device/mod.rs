@@ -1,5 +1,6 @@
 //! The devices there are, by the names they have on the command line.
 
+pub(crate) mod emulator;
 mod qemu;
 mod virtual_device;
 

@@ -3,20 +3,20 @@
 use std::ops::Range;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use pliant_core::RANGE;
-use pliant_core::obstacle::{MAX_CURVATURE, MAX_SPEED, MIN_AXIS};
+use pliant_core::obstacle::{MAX_RATIO as LARGEST_RATIO, MAX_SPEED};
+use pliant_core::{ObstacleError, RANGE};
 use toml::Spanned;
 
 use super::{Check, From, Kind};
-use crate::scene::convert::in_range;
+use crate::scene::convert::{ConvertError, in_range};
 use crate::scene::error::SceneError;
-use crate::scene::file::{Numbers, ObstacleFile, ShapeFile, Turning};
-use crate::scene::obstacle::{SceneObstacle, Shape, Track, level};
+use crate::scene::file::{Numbers, ObstacleFile, Turning};
+use crate::scene::obstacle::SceneObstacle;
+use crate::scene::shape::Shape;
+use crate::scene::track::Track;
 
-/// The core's bound on soft ratios and margins.
-const LARGEST_RATIO: f64 = 100.0;
-/// A reference point has to be this far inside the core (Gamma) to be there in `f32` too.
-const INSIDE: f64 = 0.999;
+/// A reference point that is this much farther out has to be inside the core, for it to be there in `f32` too.
+const OUTSIDE: f64 = 1.0005;
 /// How far a quaternion's length may be from one.
 const UNIT: f64 = 5e-4;
 
@@ -26,36 +26,35 @@ impl Check<'_> {
         id: u16,
         file: &Spanned<ObstacleFile>,
         before: &[SceneObstacle],
-        attractor: &Vector3<f64>,
+        target: &Track,
         timeout: f64,
     ) -> Result<SceneObstacle, SceneError> {
         let span = file.span();
         let file = file.get_ref();
-        let ones = Vector3::from_fn(|i, _| if i < self.dimension { 1.0 } else { 0.0 });
         let name = self.name(&file.name, before)?;
-        let ShapeFile::Ellipsoid(axes) = &file.shape;
-        let axes = self.numbers(axes, "obstacle.shape.ellipsoid", MIN_AXIS, RANGE)?;
+        let shape = self.shape(&file.shape, file.curvature.as_ref())?;
+        let wall = file.wall.unwrap_or(false);
         let margin = match &file.margin {
             Some(margin) => self.numbers(margin, "obstacle.margin", 1.0, LARGEST_RATIO)?,
-            None => ones,
+            None => self.ones(),
         };
+        let growth = file.growth.as_ref();
         let obstacle = SceneObstacle {
             id,
             name,
-            soft_ratio: self.soft_ratio(file, &axes, &ones)?,
-            curvature: self.curvature(file.curvature.as_ref())?,
+            dimension: self.dimension,
+            soft_ratio: self.soft_ratio(file, &shape.extent(), wall)?,
             margin,
             reference: file.reference.as_ref().map_or(Ok(Vector3::zeros()), |r| self.point(r, "obstacle.reference"))?,
-            track: self.track(file, span.clone())?,
+            track: self.obstacle_track(file, span.clone())?,
             rotation: self.rotation(file)?,
             angular_velocity: self.angular_velocity(file.angular_velocity.as_ref())?,
-            shape: Shape::Ellipsoid { axes },
+            growth: growth.map_or(Ok(0.0), |g| self.number(g, "obstacle.growth", From(-MAX_SPEED), MAX_SPEED))?,
+            shape,
+            wall,
         };
-        if level(&obstacle.reference, &axes, obstacle.curvature) >= INSIDE {
-            let at = file.reference.as_ref().map_or(span, |r| r.span());
-            return Err(self.error(Kind::Geometry, "obstacle.reference", at, "is outside the hard core"));
-        }
-        self.whereabouts(&obstacle, file, span, attractor, timeout)?;
+        self.accepted(&obstacle, file, &span)?;
+        self.whereabouts(&obstacle, file, span, target, timeout)?;
         Ok(obstacle)
     }
 
@@ -70,12 +69,8 @@ impl Check<'_> {
         Err(self.error(Kind::Value, "obstacle.name", name.span(), problem))
     }
 
-    fn soft_ratio(
-        &self,
-        file: &ObstacleFile,
-        axes: &Vector3<f64>,
-        ones: &Vector3<f64>,
-    ) -> Result<Vector3<f64>, SceneError> {
+    fn soft_ratio(&self, file: &ObstacleFile, hard: &Vector3<f64>, wall: bool) -> Result<Vector3<f64>, SceneError> {
+        let ones = self.ones();
         let keys = [
             ("stiffness", file.stiffness.as_ref().map(Spanned::span)),
             ("soft", file.soft.as_ref().map(Spanned::span)),
@@ -85,7 +80,7 @@ impl Check<'_> {
         given.sort_by_key(|(_, span)| span.start);
         let mut given = given.into_iter();
         let Some((first, span)) = given.next() else {
-            return Ok(*ones);
+            return Ok(ones);
         };
         if let Some((second, span)) = given.next() {
             let problem = format!("is there beside `{first}`: both say how thick the soft layer is");
@@ -99,9 +94,10 @@ impl Check<'_> {
             ("obstacle.stiffness", ones * (k.ln() + 1.0))
         } else if let Some(soft) = &file.soft {
             let soft = self.numbers(soft, "obstacle.soft", 0.0, f64::MAX)?;
-            let ratio = soft.zip_map(axes, |b, a| if a > 0.0 { b / a } else { 0.0 });
+            let ratio = self.over(&soft, hard, wall);
             if let Some((i, _)) = ratio.iter().enumerate().find(|(i, rho)| *i < self.dimension && **rho < 1.0) {
-                let problem = format!("{} is smaller than the hard semi-axis {}", soft[i], axes[i]);
+                let than = if wall { "larger" } else { "smaller" };
+                let problem = format!("{} is {than} than the hard semi-axis {}", soft[i], hard[i]);
                 let at = file.soft.as_ref().and_then(|s| s.get_ref().get(i)).map_or(span, Spanned::span);
                 return Err(self.error(Kind::Value, "obstacle.soft", at, problem));
             }
@@ -109,23 +105,28 @@ impl Check<'_> {
         } else {
             let layer =
                 file.layer.as_ref().map_or(Ok(0.0), |l| self.number(l, "obstacle.layer", From(0.0), f64::MAX))?;
-            ("obstacle.layer", axes.map(|a| if a > 0.0 { (a + layer) / a } else { 0.0 }))
+            let soft = hard.map(|a| if wall { (a - layer).max(0.0) } else { a + layer });
+            ("obstacle.layer", self.over(&soft, hard, wall))
         };
         if ratio.max() > LARGEST_RATIO {
-            let problem = format!("makes a soft semi-axis {:.4e} times the hard one", ratio.max());
+            let problem = if wall {
+                "leaves less than a hundredth of the free space without soft layer".to_owned()
+            } else {
+                format!("makes a soft semi-axis {:.4e} times the hard one", ratio.max())
+            };
             return Err(self.error(Kind::Value, field, span, problem));
         }
         Ok(ratio)
     }
 
-    fn curvature(&self, curvature: Option<&Spanned<i64>>) -> Result<u8, SceneError> {
-        let Some(p) = curvature else {
-            return Ok(1);
-        };
-        match u8::try_from(*p.get_ref()) {
-            Ok(value) if (1..=MAX_CURVATURE).contains(&value) => Ok(value),
-            _ => Err(self.error(Kind::Value, "obstacle.curvature", p.span(), format!("is {}", p.get_ref()))),
-        }
+    /// The soft layer's half extents over the hard ones; of a wall, whose layer is within, the inverse.
+    fn over(&self, soft: &Vector3<f64>, hard: &Vector3<f64>, wall: bool) -> Vector3<f64> {
+        let ratio = soft.zip_map(hard, |b, a| if wall { a / b } else { b / a });
+        Vector3::from_fn(|i, _| if i < self.dimension { ratio[i] } else { 0.0 })
+    }
+
+    fn ones(&self) -> Vector3<f64> {
+        Vector3::from_fn(|i, _| if i < self.dimension { 1.0 } else { 0.0 })
     }
 
     fn rotation(&self, file: &ObstacleFile) -> Result<UnitQuaternion<f64>, SceneError> {
@@ -199,70 +200,60 @@ impl Check<'_> {
         Err(self.error(kind, field, turning.span(), problem))
     }
 
-    fn track(&self, file: &ObstacleFile, span: Range<usize>) -> Result<Track, SceneError> {
-        let velocity = file
-            .velocity
-            .as_ref()
-            .map_or(Ok(Vector3::zeros()), |v| self.numbers(v, "obstacle.velocity", -MAX_SPEED, MAX_SPEED))?;
+    fn obstacle_track(&self, file: &ObstacleFile, span: Range<usize>) -> Result<Track, SceneError> {
         let center = file.center.as_ref().map(|c| self.point(c, "obstacle.center")).transpose()?;
-        let Some(path) = &file.path else {
-            let from = center
-                .ok_or_else(|| self.error(Kind::Missing, "obstacle.center", span, "is missing, and so is a `path`"))?;
-            return Ok(Track::Straight { from, velocity });
-        };
-        if let (Some(v), true) = (&file.velocity, velocity != Vector3::zeros()) {
-            let problem = "is there beside `path`, which says how the obstacle moves";
-            return Err(self.error(Kind::Conflict, "obstacle.velocity", v.span(), problem));
+        let track = self.track("obstacle", file.velocity.as_ref(), file.path.as_ref(), center)?;
+        if let (Some(Track::Path(points)), Some(center), Some(at)) = (&track, center, &file.center)
+            && points.first().is_some_and(|(t, first)| *t == 0.0 && (center - first).norm() > 1e-9)
+        {
+            let problem = "is not where the `path` is at t = 0; leave it out";
+            return Err(self.error(Kind::Conflict, "obstacle.center", at.span(), problem));
         }
-        let mut points: Vec<(f64, Vector3<f64>)> = Vec::with_capacity(path.get_ref().len() + 1);
-        for row in path.get_ref() {
-            let next = self.path_point(row)?;
-            if let (None, Some(from)) = (points.last(), center) {
-                if next.0 > 0.0 {
-                    points.push((0.0, from));
-                } else if (from - next.1).norm() > 1e-9 {
-                    let at = file.center.as_ref().map_or(span, |c| c.span());
-                    let problem = "is not where the `path` is at t = 0; leave it out";
-                    return Err(self.error(Kind::Conflict, "obstacle.center", at, problem));
-                }
-            }
-            if let Some((t, from)) = points.last() {
-                let problem = if next.0 <= *t {
-                    format!("time {} does not come after {t}", next.0)
-                } else if (next.1 - from).abs().max() > MAX_SPEED * (next.0 - t) {
-                    format!("between {t} s and {} s it is faster than {MAX_SPEED} m/s", next.0)
-                } else {
-                    points.push(next);
-                    continue;
-                };
-                return Err(self.error(Kind::Value, "obstacle.path", row.span(), problem));
-            }
-            points.push(next);
-        }
-        if points.is_empty() {
-            return Err(self.error(Kind::Value, "obstacle.path", path.span(), "has no point"));
-        }
-        Ok(Track::Path(points))
+        track.ok_or_else(|| self.error(Kind::Missing, "obstacle.center", span, "is missing, and so is a `path`"))
     }
 
-    fn path_point(&self, row: &Numbers) -> Result<(f64, Vector3<f64>), SceneError> {
-        let field = "obstacle.path";
-        let numbers = row.get_ref();
-        let (Some(t), true) = (numbers.first(), numbers.len() == self.dimension + 1) else {
-            let problem = format!(
-                "a point has {} numbers; a time and {} coordinates make {}",
-                numbers.len(),
-                self.dimension,
-                self.dimension + 1
-            );
-            return Err(self.error(Kind::Dimension, field, row.span(), problem));
+    /// The core has the last word, in both precisions it runs in: what is left is a matter of a few digits.
+    fn accepted(&self, obstacle: &SceneObstacle, file: &ObstacleFile, span: &Range<usize>) -> Result<(), SceneError> {
+        let error = match self.refusal(obstacle, 0.0) {
+            None => return Ok(()),
+            Some(ConvertError::Obstacle { error, .. }) => error,
+            Some(other) => return Err(self.error(Kind::Value, "obstacle", span.clone(), other.to_string())),
         };
-        let t = self.number(t, field, From(0.0), f64::MAX)?;
-        let mut center = Vector3::zeros();
-        for (to, n) in center.iter_mut().zip(numbers.iter().skip(1)) {
-            *to = self.number(n, field, From(-RANGE), RANGE)?;
+        let shape = format!("obstacle.shape.{}", obstacle.shape.key());
+        let problem = "is refused in single precision: it is too near to a limit";
+        let (field, problem) = match error {
+            ObstacleError::Reference => {
+                let at = file.reference.as_ref().map_or(span.clone(), |r| r.span());
+                let problem = match (&obstacle.shape, obstacle.wall) {
+                    (Shape::Polygon { .. }, _) => "does not see the whole polygon from inside",
+                    (_, true) => "is outside the free space",
+                    (_, false) => "is outside the hard core",
+                };
+                return Err(self.error(Kind::Geometry, "obstacle.reference", at, problem));
+            }
+            ObstacleError::Center => ("obstacle.center", problem),
+            ObstacleError::Rotation => ("obstacle.rotation", problem),
+            ObstacleError::SoftRatio => ("obstacle.soft", problem),
+            ObstacleError::Margin => ("obstacle.margin", problem),
+            ObstacleError::Velocity => ("obstacle.velocity", problem),
+            ObstacleError::Spin => ("obstacle.angular_velocity", problem),
+            ObstacleError::Growth => ("obstacle.growth", problem),
+            ObstacleError::Curvature => ("obstacle.curvature", problem),
+            ObstacleError::Rounding => ("obstacle.shape.rounding", problem),
+            ObstacleError::Dimension | ObstacleError::Axes | ObstacleError::Vertices => (shape.as_str(), problem),
+        };
+        Err(self.error(Kind::Value, field, file.shape.span(), problem))
+    }
+
+    /// Why the core does not take it as it is at time `t`, s. Its reference point has to be a little farther inside than the core wants it.
+    fn refusal(&self, obstacle: &SceneObstacle, t: f64) -> Option<ConvertError> {
+        let reference = obstacle.reference * OUTSIDE;
+        let obstacle = SceneObstacle { reference, ..obstacle.clone() };
+        let posed = obstacle.at(t);
+        match self.dimension {
+            2 => posed.to_core::<f32, 2>().err().or_else(|| posed.to_core::<f64, 2>().err()),
+            _ => posed.to_core::<f32, 3>().err().or_else(|| posed.to_core::<f64, 3>().err()),
         }
-        Ok((t, center))
     }
 
     /// What depends on where the obstacle is.
@@ -271,23 +262,45 @@ impl Check<'_> {
         obstacle: &SceneObstacle,
         file: &ObstacleFile,
         span: Range<usize>,
-        attractor: &Vector3<f64>,
+        target: &Track,
         timeout: f64,
     ) -> Result<(), SceneError> {
-        if obstacle.at(0.0).gamma(attractor) <= 1.0 {
+        for (i, (t, x)) in target.rests().into_iter().enumerate() {
+            if obstacle.at(t).gamma(&x) > 1.0 {
+                continue;
+            }
             let (field, at) = match (&file.center, &file.path) {
                 (Some(center), _) => ("obstacle.center", center.span()),
                 (None, Some(path)) => ("obstacle.path", path.span()),
                 (None, None) => ("obstacle.center", span.clone()),
             };
-            let problem = "puts the attractor inside the hard core, where no motion can end";
-            let allowed = "a place where the hard core, its margin included, does not hold the attractor";
+            let what = if i == 0 { "the attractor" } else { "the end of the attractor's path" };
+            let (problem, allowed) = if obstacle.wall {
+                let problem = format!("leaves {what} outside the wall's free space, where no motion can end");
+                (problem, "a place where the wall's free space, less its margin, holds the attractor")
+            } else {
+                let problem = format!("puts {what} inside the hard core, where no motion can end");
+                (problem, "a place where the hard core, its margin included, does not hold the attractor")
+            };
             return Err(self.error(Kind::Geometry, field, at, problem).allowing(allowed));
         }
-        if !in_range(&obstacle.at(timeout).pose.center) {
+        let last = obstacle.at(timeout);
+        if !in_range(&last.pose.center) {
             let at = file.velocity.as_ref().map_or(span, |v| v.span());
             let problem = format!("takes the obstacle beyond +-1000 m before the timeout of {timeout} s");
             return Err(self.error(Kind::Value, "obstacle.velocity", at, problem));
+        }
+        if let Some(growth) = file.growth.as_ref().filter(|g| *g.get_ref() != 0.0) {
+            let error = |problem: String| self.error(Kind::Value, "obstacle.growth", growth.span(), problem);
+            if last.shape.extent().max() > RANGE {
+                return Err(error(format!("makes the core larger than {RANGE} m before the timeout of {timeout} s")));
+            }
+            // The only thing that does not grow along is the reference point.
+            let refused = (1..=16).find(|i| self.refusal(obstacle, timeout * f64::from(*i) / 16.0).is_some());
+            if refused.is_some() {
+                let problem = "leaves the reference point outside the core before the timeout";
+                return Err(error(format!("{problem} of {timeout} s")));
+            }
         }
         Ok(())
     }

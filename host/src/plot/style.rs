@@ -1,0 +1,51 @@
+//! What things look like.
+
+pub(super) const CORE: &str = r##"fill="#343a43" stroke="#15181c" stroke-width="1""##;
+/// In a section paths pass before and behind what is cut: it does not hide them.
+pub(super) const CUT_CORE: &str = r##"fill="#343a43" fill-opacity="0.5" stroke="#15181c" stroke-width="1""##;
+pub(super) const SMALL: &str =
+    r##"font-size="10" stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##;
+pub(super) const DOT: &str = r##"fill="#ffffff" stroke="#15181c" stroke-width="1.2""##;
+pub(super) const MARGIN: &str = r##"fill="none" stroke="#15181c" stroke-width="1" stroke-dasharray="2 2.5""##;
+pub(super) const SHELL: &str = r##"fill="#f0a54a" fill-opacity="0.30" stroke="#c97a1c" stroke-width="1""##;
+pub(super) const OVERLAP: &str = r##"fill="#d03b5f" fill-opacity="0.42" stroke="#a81f45" stroke-width="0.8""##;
+pub(super) const OVERLAP_LINE: &str = r##"fill="none" stroke="#a81f45" stroke-width="0.8""##;
+pub(super) const GHOST: &str = r##"fill="none" stroke="#6b7480" stroke-width="0.9" stroke-dasharray="4 3""##;
+pub(super) const GHOST_INSIDE: &str = r##"fill="none" stroke="#c3cad3" stroke-width="0.9" stroke-dasharray="4 3""##;
+pub(super) const TRACK: &str =
+    r##"fill="none" stroke="#343a43" stroke-width="1.3" stroke-dasharray="1.5 3" stroke-linecap="round""##;
+pub(super) const LINE: &str = r##"fill="none" stroke="#1f5fbf" stroke-width="3" stroke-linecap="round""##;
+pub(super) const START: &str = r##"fill="#ffffff" stroke="#15181c" stroke-width="1.8""##;
+pub(super) const ATTRACTOR: &str = r##"fill="#ffd43b" stroke="#15181c" stroke-width="1.1" stroke-linejoin="round""##;
+pub(super) const CASING: &str =
+    r##"fill="none" stroke="#ffffff" stroke-width="5.4" stroke-linecap="round" stroke-linejoin="round""##;
+pub(super) const FLOW: &str = r##"fill="none" stroke="#9db0c4" stroke-width="1""##;
+pub(super) const FLOW_HEAD: &str = r##"fill="#8298af""##;
+/// Around the points of a scan, which are many: it does not hide them.
+pub(super) const SCAN: &str = r##"fill="#9aa2ad""##;
+pub(super) const SCAN_POINT: &str = r##"fill="#15181c""##;
+/// Where the attractor is at other times than that of the figure.
+pub(super) const ATTRACTOR_LATER: &str =
+    r##"fill="#fff3bf" stroke="#15181c" stroke-width="0.8" stroke-linejoin="round""##;
+pub(super) const ATTRACTOR_TRACK: &str =
+    r##"fill="none" stroke="#b8860b" stroke-width="1.6" stroke-dasharray="1.5 3" stroke-linecap="round""##;
+pub(super) const ATTRACTOR_HEAD: &str = r##"fill="#b8860b""##;
+pub(super) const TRACK_HEAD: &str = r##"fill="#343a43""##;
+
+/// The colour of a speed between 0 (the least) and 1 (the largest): viridis without its lightest end, which white paper swallows.
+pub(super) fn speed_colour(share: f64) -> String {
+    const COLOURS: [[f64; 3]; 8] = [
+        [68.0, 1.0, 84.0],
+        [70.0, 50.0, 126.0],
+        [54.0, 92.0, 141.0],
+        [39.0, 127.0, 142.0],
+        [31.0, 161.0, 135.0],
+        [74.0, 193.0, 109.0],
+        [130.0, 211.0, 77.0],
+        [178.0, 221.0, 45.0],
+    ];
+    let at = share.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
+    let low = (at.floor() as usize).min(COLOURS.len() - 2);
+    let mix = |i: usize| (COLOURS[low][i] + (COLOURS[low + 1][i] - COLOURS[low][i]) * (at - low as f64)).round() as u8;
+    format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
+}

@@ -1,0 +1,177 @@
+//! Shapes, walls, and sizes that change.
+
+use super::wrong::{Case, refused};
+use super::*;
+
+const BOX: &str = r#"[ds]
+linear = { attractor = [0.0, 0.0], gain = 1.0 }
+[[start]]
+position = [0.4, 0.4]
+[[obstacle]]
+name = "crate"
+shape = { box = [0.1, 0.05], rounding = 0.02 }
+center = [0.3, 0.1]
+"#;
+
+const POLYGON: &str = r#"[ds]
+linear = { attractor = [0.0, 0.0], gain = 1.0 }
+[[start]]
+position = [0.4, 0.4]
+[[obstacle]]
+name = "arrow"
+center = [0.3, 0.1]
+shape = { polygon = [
+    [0.1, 0.0],
+    [-0.06, 0.08],
+    [-0.02, 0.0],
+    [-0.06, -0.08],
+] }
+"#;
+
+const ROUND: &str = r#"[ds]
+linear = { attractor = [0.0, 0.0, 0.0], gain = 1.0 }
+[[start]]
+position = [0.4, 0.4, 0.0]
+[[obstacle]]
+name = "pipe"
+shape = { cylinder = [0.05, 0.1], rounding = 0.01 }
+center = [0.3, 0.1, 0.0]
+"#;
+
+const ROOM: &str = r#"[ds]
+linear = { attractor = [0.3, 0.0], gain = 1.0 }
+[[start]]
+position = [-0.3, 0.1]
+[[obstacle]]
+name = "room"
+shape = { box = [0.5, 0.4] }
+wall = true
+center = [0.0, 0.0]
+layer = 0.1
+growth = 0.0
+reference = [0.0, 0.0]
+"#;
+
+#[rustfmt::skip]
+const WRONG: &[Case] = &[
+    // which shape
+    (BOX, "{ box = [0.1, 0.05], rounding = 0.02 }", "{ rounding = 0.02 }", 7, "obstacle.shape", "names no shape"),
+    (BOX, "{ box =", "{ ellipsoid = [1, 1], box =", 7, "obstacle.shape.box", "beside `ellipsoid`"),
+    (BOX, "{ box =", "{ cube =", 7, "obstacle.shape.cube", "there is no key `cube`"),
+    (BOX, "{ box =", "{ ellipsoid =", 7, "obstacle.shape.rounding", "not for `ellipsoid`"),
+    (BOX, "center =", "curvature = 2\ncenter =", 8, "obstacle.curvature", "not for `box`"),
+    (BOX, "{ box = [0.1, 0.05], rounding = 0.02 }", "{ capsule = [0.1, 0.05] }", 7, "obstacle.shape.capsule", "round at both ends"),
+    (BOX, "{ box = [0.1, 0.05], rounding = 0.02 }", "{ cylinder = [0.1, 0.05] }", 7, "obstacle.shape.cylinder", "three dimensions"),
+    (ROUND, "{ cylinder = [0.05, 0.1], rounding = 0.01 }", "{ polygon = [[0, 1]] }", 7, "obstacle.shape.polygon", "two dimensions"),
+    // sizes
+    (BOX, "[0.1, 0.05]", "[0.1]", 7, "obstacle.shape.box", "has 1 number"),
+    (BOX, "[0.1, 0.05]", "[0.1, 0.0]", 7, "obstacle.shape.box", "too small"),
+    (BOX, "rounding = 0.02", "rounding = 0.051", 7, "obstacle.shape.rounding", "too large"),
+    (BOX, "rounding = 0.02", "rounding = 0", 7, "obstacle.shape.rounding", "too small"),
+    (ROUND, "[0.05, 0.1]", "[0.05]", 7, "obstacle.shape.cylinder", "a radius and half a length make 2"),
+    (ROUND, "[0.05, 0.1]", "[0.05, 0.1, 0.1]", 7, "obstacle.shape.cylinder", "has 3 numbers"),
+    (ROUND, "[0.05, 0.1]", "[0.05, 0.0]", 7, "obstacle.shape.cylinder", "too small"),
+    (ROUND, "rounding = 0.01", "rounding = 0.06", 7, "obstacle.shape.rounding", "too large"),
+    (ROUND, "cylinder = [0.05, 0.1], rounding = 0.01", "capsule = [0.05, 0.1], rounding = 0.01", 7, "obstacle.shape.rounding", "capsule"),
+    (ROUND, "cylinder = [0.05, 0.1], rounding = 0.01", "capsule = [0.05, -0.1]", 7, "obstacle.shape.capsule", "too small"),
+    // corners
+    (POLYGON, "    [-0.02, 0.0],\n    [-0.06, -0.08],\n", "", 8, "obstacle.shape.polygon", "has 2 corners"),
+    (POLYGON, "    [0.1, 0.0],\n", "    [0.1, 0.0, 0.0],\n", 9, "obstacle.shape.polygon", "has 3 numbers"),
+    (POLYGON, "[-0.02, 0.0]", "[0.02, 0.0]", 10, "obstacle.shape.polygon", "shows the origin its outer side"),
+    (POLYGON, "[-0.02, 0.0]", "[nan, 0.0]", 11, "obstacle.shape.polygon", "NaN"),
+    (POLYGON, "[-0.06, 0.08]", "[-0.06, 0.0]", 9, "obstacle.shape.polygon", "passes through it"),
+    (POLYGON, "center =", "reference = [-0.05, 0.0]\ncenter =", 7, "obstacle.reference", "does not see the whole polygon"),
+    // walls
+    (ROOM, "wall = true", "wall = \"yes\"", 8, "obstacle.wall", "expected a boolean"),
+    (ROOM, "[-0.3, 0.1]", "[-0.6, 0.1]", 4, "start.position", "outside the free space of the wall \"room\""),
+    (ROOM, "[0.3, 0.0]", "[0.51, 0.0]", 9, "obstacle.center", "outside the wall's free space"),
+    (ROOM, "layer = 0.1", "layer = 0.1\nmargin = [1.0, 5.0]", 4, "start.position", "outside the free space"),
+    (ROOM, "layer = 0.1", "layer = 0.4", 10, "obstacle.layer", "less than a hundredth"),
+    (ROOM, "layer = 0.1", "soft = [0.6, 0.3]", 10, "obstacle.soft", "larger than the hard semi-axis"),
+    (ROOM, "reference = [0.0, 0.0]", "reference = [0.5, 0.0]", 12, "obstacle.reference", "outside the free space"),
+    // growth
+    (ROOM, "growth = 0.0", "growth = 101", 11, "obstacle.growth", "too large"),
+    (ROOM, "growth = 0.0", "growth = 50.0", 11, "obstacle.growth", "larger than 1000 m before the timeout"),
+    (ROOM, "growth = 0.0\nreference = [0.0, 0.0]", "growth = -0.1\nreference = [0.2, 0.0]", 11, "obstacle.growth", "reference point"),
+];
+
+#[test]
+fn what_is_wrong_with_a_shape_is_named() {
+    for good in [BOX, POLYGON, ROUND, ROOM] {
+        parse(good).unwrap();
+    }
+    refused(WRONG);
+}
+
+#[test]
+fn a_rounding_that_is_left_out_is_a_tenth_of_the_least_half_side() {
+    let of = |text: &str, from: &str, to: &str| parse(&text.replace(from, to)).unwrap().obstacles()[0].shape().clone();
+    let half = Vector3::new(0.1, 0.05, 0.0);
+    assert_eq!(of(BOX, ", rounding = 0.02", ""), Shape::Box { half, rounding: 0.05 * 0.1 });
+    let can = Shape::Cylinder { radius: 0.05, half_length: 0.1, rounding: 0.05 * 0.1 };
+    assert_eq!(of(ROUND, ", rounding = 0.01", ""), can);
+}
+
+#[test]
+fn a_clockwise_polygon_is_turned_round() {
+    let other_way = r"[[0.1, 0.0], [-0.06, -0.08], [-0.02, 0.0], [-0.06, 0.08]]";
+    let (from, to) = (POLYGON.find("[\n").unwrap(), POLYGON.find("] }").unwrap());
+    let text = format!("{}{other_way}{}", &POLYGON[..from], &POLYGON[to + 1..]);
+    let shape = |text: &str| parse(text).unwrap().obstacles()[0].shape().clone();
+    assert_eq!(shape(&text), shape(POLYGON));
+    // The corner that is named is the one in the file.
+    let error = parse(&text.replace("[-0.02, 0.0]", "[0.02, 0.0]")).unwrap_err();
+    let label = error.labels().unwrap().next().unwrap();
+    let (from, to) = (label.offset(), label.offset() + label.len());
+    let text = text.replace("[-0.02, 0.0]", "[0.02, 0.0]");
+    assert!(["[0.02, 0.0]", "[-0.06, 0.08]", "[-0.06, -0.08]"].contains(&&text[from..to]), "{}", &text[from..to]);
+}
+
+#[test]
+fn a_walls_inside_is_free_and_its_soft_layer_within() {
+    let scene = parse(ROOM).unwrap();
+    let room = scene.obstacles()[0].at(0.0);
+    let at = |x: f64| Vector3::new(x, 0.0, 0.0);
+    assert!(room.gamma(&at(0.49)) > 1.0 && room.gamma(&at(0.51)) < 1.0);
+    assert!(room.gamma_soft(&at(0.39)) > 1.0 && room.gamma_soft(&at(0.41)) < 1.0);
+    assert!((room.soft_surface(&at(1.0)).x - 0.4).abs() < 1e-12);
+}
+
+#[test]
+fn growth_lengthens_every_half_extent_and_ends_small() {
+    let reach = |text: &str, rate: f64, t: f64, axis: usize| {
+        let scene = parse(&text.replace("center =", &format!("growth = {rate:?}\ncenter ="))).unwrap();
+        let o = &scene.obstacles()[0];
+        assert!(o.is_moving());
+        let mut direction = Vector3::zeros();
+        direction[axis] = 1.0;
+        let posed = o.at(t);
+        (posed.surface(&direction) - posed.pose.center).norm()
+    };
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    assert!(near(reach(BOX, 0.02, 2.0, 0), 0.14) && near(reach(BOX, 0.02, 2.0, 1), 0.09));
+    assert!(near(reach(BOX, -0.02, 2.0, 0), 0.06) && near(reach(BOX, -0.02, 2.0, 1), 0.01));
+    assert!(near(reach(POLYGON, 0.02, 2.0, 0), 0.14) && near(reach(ROUND, 0.02, 2.0, 2), 0.14));
+    let scene = parse(&BOX.replace("center =", "growth = -0.02\ncenter =")).unwrap();
+    let last = scene.obstacles()[0].at(20.0);
+    assert!(last.shape.extent().y < 2e-4 && last.growth == 0.0, "{:?}", last.shape);
+}
+
+/// What a device makes of a sighting while it waits for the next is never smaller than what is then seen.
+#[test]
+fn what_grows_is_extrapolated_on_the_safe_side() {
+    for text in [BOX, POLYGON] {
+        let scene = parse(&text.replace("center =", "growth = 0.05\ncenter =")).unwrap();
+        let o = &scene.obstacles()[0];
+        for i in 0..90 {
+            let angle = f64::from(i) * std::f64::consts::TAU / 90.0;
+            let direction = Vector3::new(angle.cos(), angle.sin(), 0.0);
+            let grown = o.at(1.0 + 0.033).surface(&direction);
+            let mut table = pliant_core::Table::<f64, 2, 1>::new();
+            let seen = o.at(1.0).to_core::<f64, 2>().unwrap();
+            table.upsert(0, seen, 0.033, &pliant_core::Ageing::default()).unwrap();
+            let gamma = table.iter().next().unwrap().obstacle().gamma(&grown.xy());
+            assert!(gamma < 1.0 + 1e-9, "{gamma} at {angle}");
+        }
+    }
+}
