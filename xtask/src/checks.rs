@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 
 use crate::failure::Failure;
 use crate::tally::Tally;
-use crate::workspace::{BOARD, THUMBV6M, THUMBV7EM, Workspace, cannot_start, run as run_command};
-use crate::{deny, fuzz, setup};
+use crate::workspace::{BENCH, BOARD, NO_PANIC, THUMBV6M, THUMBV7EM, Workspace, cannot_start, run as run_command};
+use crate::{deny, fuzz, no_panic, setup};
 
 /// One check: its name for people, and what it does.
 struct Step {
@@ -34,7 +34,7 @@ enum Done {
     },
 }
 
-const STEPS: [Step; 9] = [
+const STEPS: [Step; 11] = [
     Step { name: "set-up", run: |workspace| setup::run(workspace).map(|()| Done::Passed) },
     Step { name: "format", run: format },
     Step { name: "clippy, host", run: clippy_host },
@@ -42,6 +42,8 @@ const STEPS: [Step; 9] = [
     Step { name: "docs", run: docs },
     Step { name: "build, tool", run: |workspace| workspace.build_pliant().map(|()| Done::Passed) },
     Step { name: "build, firmware", run: |workspace| workspace.build_firmware().map(|()| Done::Passed) },
+    Step { name: "build, bench", run: |workspace| workspace.build_bench().map(|()| Done::Passed) },
+    Step { name: "no panic", run: |workspace| no_panic::run(workspace).map(|()| Done::Passed) },
     Step { name: "tests", run: tests },
     Step { name: "deny", run: deny_in_ci_or_if_installed },
 ];
@@ -69,10 +71,11 @@ fn clippy_host(workspace: &Workspace) -> Result<Done, Failure> {
 fn clippy_firmware(workspace: &Workspace) -> Result<Done, Failure> {
     const LIBRARIES: [&str; 7] =
         ["clippy", "--package", "pliant-core", "--package", "pliant-protocol", "--package", "pliant-firmware"];
+    const IMAGES: [&str; 5] = ["clippy", "--package", BENCH, "--package", NO_PANIC];
     // Named, because tests cannot be built for a board.
     const WHOLE_BOARD: [&str; 5] = ["clippy", "--package", BOARD, "--bins", "--examples"];
-    for (target, arguments) in [(THUMBV7EM, &LIBRARIES[..]), (THUMBV6M, &LIBRARIES[..]), (THUMBV7EM, &WHOLE_BOARD[..])]
-    {
+    let both = [THUMBV7EM, THUMBV6M].into_iter().flat_map(|target| [(target, &LIBRARIES[..]), (target, &IMAGES[..])]);
+    for (target, arguments) in both.chain([(THUMBV7EM, &WHOLE_BOARD[..])]) {
         run_command(workspace.cargo_for(target, arguments).args(["--", "--deny", "warnings"]))?;
     }
     Ok(Done::Passed)

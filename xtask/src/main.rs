@@ -2,17 +2,20 @@
 //!
 //! One module a task or a concept: [`setup`] (what the machine must have), [`checks`] (the steps of
 //! `test`), [`tally`] (test counts out of cargo's output), [`size`] over [`image`] (what the firmware
-//! takes), [`fuzz`], [`demos`]; beneath them [`workspace`] starts commands and [`failure`] is what goes
-//! wrong, as one sentence.
+//! takes), [`no_panic`] over [`callers`] (that the tick cannot panic), [`campaign`], [`fuzz`],
+//! [`demos`]; beneath them [`workspace`] starts commands and [`failure`] is what goes wrong, as one sentence.
 
 #![forbid(unsafe_code)]
 
+mod callers;
+mod campaign;
 mod checks;
 mod demos;
 mod deny;
 mod failure;
 mod fuzz;
 mod image;
+mod no_panic;
 mod setup;
 mod size;
 mod tally;
@@ -29,6 +32,8 @@ Usage: cargo xtask <task>
 Tasks:
   test                    set up, then run every check and every test; what CI runs
   setup                   install what the project needs and this machine lacks
+  campaign [--samples N]  the core's property campaigns, N samples each (10^8 by default; hours)
+  no-panic                show that the tick cannot panic, on either core
   size [--json]           text, data, bss and stack of the firmware
   fuzz [--seconds N]      run every fuzz target, N seconds each (600 by default)
   deny                    check licences, bans and sources; installs cargo-deny if missing
@@ -54,6 +59,8 @@ fn run(arguments: &[String]) -> Result<(), Failure> {
         ["setup"] => setup::run(&Workspace::locate()?),
         ["size"] => size::run(&Workspace::locate()?, size::Format::Table),
         ["size", "--json"] => size::run(&Workspace::locate()?, size::Format::Json),
+        ["campaign", options @ ..] => campaign::run(&Workspace::locate()?, options),
+        ["no-panic"] => no_panic::run(&Workspace::locate()?),
         ["fuzz", options @ ..] => fuzz::run(&Workspace::locate()?, fuzz::seconds(options)?),
         ["deny"] => deny::install_and_check(&Workspace::locate()?),
         ["demos"] => demos::run(&Workspace::locate()?),

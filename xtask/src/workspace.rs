@@ -10,6 +10,10 @@ use crate::failure::Failure;
 
 /// The board that QEMU runs, and on which the firmware is tested.
 pub const BOARD: &str = "pliant-mps2-an386";
+/// The image that does not link if the tick can panic.
+pub const NO_PANIC: &str = "pliant-no-panic";
+/// What the method is measured with on boards.
+pub const BENCH: &str = "pliant-mps2-bench";
 /// The default board's target: Cortex-M4F and M7.
 pub const THUMBV7EM: &str = "thumbv7em-none-eabihf";
 /// Cores without an FPU, as Cortex-M0+: the libraries must build for them too.
@@ -48,7 +52,12 @@ impl Workspace {
 
     /// The default board's ELF image, once built.
     pub fn firmware(&self) -> PathBuf {
-        self.target.join(THUMBV7EM).join("firmware").join(BOARD)
+        self.image(THUMBV7EM, BOARD)
+    }
+
+    /// A package's ELF image for a microcontroller, once built.
+    pub fn image(&self, target: &str, package: &str) -> PathBuf {
+        self.target.join(target).join("firmware").join(package)
     }
 
     /// A folder in the target directory for what need not be kept.
@@ -94,7 +103,16 @@ impl Workspace {
 
     /// Builds the default board's firmware as it is flashed.
     pub fn build_firmware(&self) -> Result<(), Failure> {
-        run(&mut self.cargo_for(THUMBV7EM, &["build", "--profile", "firmware", "--package", BOARD]))
+        self.build_image(THUMBV7EM, BOARD)
+    }
+
+    /// Builds what the method is measured with on boards.
+    pub fn build_bench(&self) -> Result<(), Failure> {
+        [THUMBV7EM, THUMBV6M].into_iter().try_for_each(|target| self.build_image(target, BENCH))
+    }
+
+    fn build_image(&self, target: &str, package: &str) -> Result<(), Failure> {
+        run(&mut self.cargo_for(target, &["build", "--profile", "firmware", "--package", package]))
     }
 }
 

@@ -1,0 +1,45 @@
+//! Instructions and cache misses of one modulated velocity, by Callgrind: the same on a busy machine as on an idle one.
+//!
+//! `cargo bench -p pliant-bench --bench instructions`. Needs valgrind, and the runner of the same version as the library:
+//! `cargo install --locked gungraun-runner@0.20.0`.
+#![allow(missing_docs, reason = "made by gungraun's macros")]
+
+use std::hint::black_box;
+
+use gungraun::{library_benchmark, library_benchmark_group, main};
+use pliant_bench::Number;
+use pliant_bench::field::Field;
+
+/// All positions of a field: what is reported is the sum over 256 of them.
+fn velocities<S: Number, const D: usize>(field: &Field<S, D>) {
+    for state in &field.states {
+        black_box(field.velocity(black_box(state)));
+    }
+}
+
+#[library_benchmark]
+#[benches::obstacles(args = [1, 2, 5, 10, 20, 50], setup = Field::<f64, 2>::new)]
+fn planar_f64(field: Field<f64, 2>) {
+    velocities(&field);
+}
+
+#[library_benchmark]
+#[benches::obstacles(args = [1, 2, 5, 10, 20, 50], setup = Field::<f32, 2>::new)]
+fn planar_f32(field: Field<f32, 2>) {
+    velocities(&field);
+}
+
+#[library_benchmark]
+#[benches::obstacles(args = [1, 2, 5, 10, 20, 50], setup = Field::<f64, 3>::new)]
+fn spatial_f64(field: Field<f64, 3>) {
+    velocities(&field);
+}
+
+#[library_benchmark]
+#[benches::obstacles(args = [1, 2, 5, 10, 20, 50], setup = Field::<f32, 3>::new)]
+fn spatial_f32(field: Field<f32, 3>) {
+    velocities(&field);
+}
+
+library_benchmark_group!(name = modulated; benchmarks = planar_f64, planar_f32, spatial_f64, spatial_f32);
+main!(library_benchmark_groups = modulated);

@@ -1,0 +1,176 @@
+//! What a tick takes.
+
+use core::hint::black_box;
+
+use crate::{Digest, Kind, Number, Plan, TICK_UNITS, stream};
+use pliant_core::{Command, Controller, RobotState, Settings};
+
+/// Something that counts up: instructions on an emulated board, nanoseconds on a desk.
+pub trait Clock {
+    /// The count now.
+    fn now(&mut self) -> u32;
+    /// What lies between two counts, by the measure that is reported, the cost of reading the clock not counted.
+    fn between(&self, start: u32, end: u32) -> u32;
+}
+
+/// A tick to be measured: the shape of the problem. The dimension and number type are the function's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Case {
+    /// Obstacles.
+    pub obstacles: u16,
+    /// Components of the skill.
+    pub components: usize,
+    /// Points of a scan.
+    pub points: usize,
+    /// What obstacles are like.
+    pub kind: Kind,
+    /// Ticks that are measured.
+    pub ticks: u32,
+}
+
+/// Ticks in one scene, before the next.
+const SCENE: u32 = 500;
+
+/// What was measured, in the clock's measure a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Figures {
+    /// Half of the ticks took no more.
+    pub median: u32,
+    /// 99 % of the ticks took no more.
+    pub p99: u32,
+    /// No tick took more.
+    pub worst: u32,
+    /// Which tick that was.
+    pub worst_at: u32,
+    /// Of all commands.
+    pub digest: u64,
+}
+
+/// A part of a tick that can be run by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// All of it.
+    Tick,
+    /// f(x), relative to the attractor.
+    Nominal,
+    /// The modulated velocity: f(x), the surroundings without soft layers, the modulation.
+    Modulated,
+    /// Everything that depends on the position alone: f(x), surroundings, modulation, soft layers.
+    Stages,
+    /// A tick without the guard.
+    Unguarded,
+    /// The passage of time.
+    Wait,
+}
+
+impl Part {
+    /// Every part.
+    pub const ALL: [Self; 6] = [Self::Tick, Self::Nominal, Self::Modulated, Self::Stages, Self::Unguarded, Self::Wait];
+
+    /// What reports call it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Tick => "tick",
+            Self::Nominal => "nominal",
+            Self::Modulated => "modulated",
+            Self::Stages => "stages",
+            Self::Unguarded => "unguarded",
+            Self::Wait => "wait",
+        }
+    }
+}
+
+/// Measures the ticks of a case; `counts` has room for all of them, and gets each one's count, sorted.
+pub fn measure<S: Number, const D: usize, const CAP: usize>(
+    case: Case,
+    part: Part,
+    clock: &mut impl Clock,
+    counts: &mut [u32],
+) -> Figures {
+    let mut figures = Figures::default();
+    let mut digest = Digest::default();
+    let mut room = counts.iter_mut();
+    let mut done = 0;
+    for scene in 0..case.ticks.div_ceil(SCENE) {
+        let Case { obstacles, components, points, kind, .. } = case;
+        let plan = Plan { seed: 1000 + scene, obstacles, components, points, kind };
+        stream::run::<S, D, CAP>(plan, SCENE.min(case.ticks - done), |controller, state| {
+            let (count, command) = timed(part, controller, state, clock);
+            if count > figures.worst {
+                (figures.worst, figures.worst_at) = (count, done);
+            }
+            if let Some(place) = room.next() {
+                *place = count;
+            }
+            done += 1;
+            digest.command(&command);
+            command
+        });
+    }
+    let left = room.len();
+    let filled = counts.len() - left;
+    let counts = counts.get_mut(..filled).unwrap_or_default();
+    counts.sort_unstable();
+    let at = |thousandths: usize| counts.get(counts.len() * thousandths / 1000).copied().unwrap_or(figures.worst);
+    Figures { median: at(500), p99: at(990), digest: digest.value(), ..figures }
+}
+
+/// What the part takes, and the command of a whole tick.
+fn timed<S: Number, const D: usize, const CAP: usize>(
+    part: Part,
+    controller: &mut Controller<S, D, CAP>,
+    state: &RobotState<S, D>,
+    clock: &mut impl Clock,
+) -> (u32, Command<S, D>) {
+    let state = black_box(state);
+    let mut copy = None;
+    if matches!(part, Part::Unguarded | Part::Wait) {
+        let copy = copy.insert(controller.clone());
+        copy.set_settings(Settings { guard: None, ..*controller.settings() });
+    }
+    let start = clock.now();
+    let mut command = None;
+    match (part, &mut copy) {
+        (Part::Nominal, _) => nominal(controller, state),
+        (Part::Modulated, _) => modulated(controller, state),
+        (Part::Stages, _) => stages(controller, state),
+        (Part::Unguarded, Some(copy)) => drop(black_box(tick(copy, state))),
+        (Part::Wait, Some(copy)) => wait(copy),
+        _ => command = Some(tick(controller, state)),
+    }
+    let end = clock.now();
+    (clock.between(start, end), command.unwrap_or_else(|| tick(controller, state)))
+}
+
+// None of these is inlined: what is counted is one function, whoever calls it.
+
+#[inline(never)]
+fn tick<S: Number, const D: usize, const CAP: usize>(
+    controller: &mut Controller<S, D, CAP>,
+    state: &RobotState<S, D>,
+) -> Command<S, D> {
+    controller.tick(state, S::units(TICK_UNITS))
+}
+
+#[inline(never)]
+fn nominal<S: Number, const D: usize, const CAP: usize>(controller: &Controller<S, D, CAP>, state: &RobotState<S, D>) {
+    black_box(controller.motion().relative(state.position()));
+}
+
+#[inline(never)]
+fn modulated<S: Number, const D: usize, const CAP: usize>(
+    controller: &Controller<S, D, CAP>,
+    state: &RobotState<S, D>,
+) {
+    black_box(controller.modulated(state));
+}
+
+#[inline(never)]
+fn stages<S: Number, const D: usize, const CAP: usize>(controller: &Controller<S, D, CAP>, state: &RobotState<S, D>) {
+    black_box(controller.evaluate(state));
+}
+
+#[inline(never)]
+fn wait<S: Number, const D: usize, const CAP: usize>(controller: &mut Controller<S, D, CAP>) {
+    controller.wait(S::units(TICK_UNITS));
+}
