@@ -3,10 +3,11 @@
 use std::fmt::Write;
 
 use crate::oracle::{
-    OracleMethod, OracleMotion, OracleObstacle, OracleRotation, OracleScene, OracleSpin, OracleSteering,
+    OracleMethod, OracleMotion, OracleObstacle, OracleRotation, OracleScene, OracleShape, OracleSpin, OracleSteering,
 };
 
-/// The scene as TOML. A learnt motion is named as `model.toml`, beside the scene; see [`model_toml`].
+/// The scene as TOML, as it is at first: a file says how fast things grow, not how much they have grown, and its attractor starts
+/// where it was learnt ([`OracleScene::at_first`]). A learnt motion is named as `model.toml`, beside the scene; see [`model_toml`].
 pub fn scene_toml(scene: &OracleScene, starts: &[Vec<f64>]) -> String {
     let mut text = String::from("[ds]\n");
     match &scene.motion {
@@ -28,6 +29,16 @@ pub fn scene_toml(scene: &OracleScene, starts: &[Vec<f64>]) -> String {
     if let Some(acceleration) = scene.limits.acceleration {
         let _ = writeln!(text, "acceleration = {acceleration:?}");
     }
+    let _ = match scene.guard {
+        Some(approach) => writeln!(text, "[guard]\napproach = {approach:?}"),
+        None => writeln!(text, "[guard]\nenabled = false"),
+    };
+    if let Some(drift) = &scene.drift {
+        let _ = writeln!(text, "[attractor]\nvelocity = {:?}", drift.velocity);
+    }
+    if let Some(scan) = &scene.scan {
+        let _ = writeln!(text, "[scan]\npoints = {:?}\nradius = {:?}", scan.points, scan.radius);
+    }
     for start in starts {
         let _ = writeln!(text, "[[start]]\nposition = {start:?}");
     }
@@ -38,9 +49,14 @@ pub fn scene_toml(scene: &OracleScene, starts: &[Vec<f64>]) -> String {
 }
 
 fn obstacle(text: &mut String, n: usize, o: &OracleObstacle) {
-    let soft: Vec<f64> = o.axes.iter().zip(&o.soft_ratio).map(|(a, rho)| a * rho).collect();
-    let _ = writeln!(text, "[[obstacle]]\nname = \"number {n}\"\nshape = {{ ellipsoid = {:?} }}", o.axes);
-    let _ = writeln!(text, "center = {:?}\nsoft = {soft:?}\ncurvature = {}", o.center, o.curvature);
+    // The layer of a wall lies within.
+    let extent = |(e, rho): (&f64, &f64)| if o.wall { e / rho } else { e * rho };
+    let soft: Vec<f64> = o.shape.semi_extents().iter().zip(&o.soft_ratio).map(extent).collect();
+    let _ = writeln!(text, "[[obstacle]]\nname = \"number {n}\"\nshape = {{ {} }}", shape(&o.shape));
+    if let OracleShape::Ellipsoid { curvature, .. } = o.shape {
+        let _ = writeln!(text, "curvature = {curvature}");
+    }
+    let _ = writeln!(text, "center = {:?}\nsoft = {soft:?}\nwall = {}\ngrowth = {:?}", o.center, o.wall, o.growth);
     let _ = writeln!(text, "margin = {:?}\nreference = {:?}\nvelocity = {:?}", o.margin, o.reference, o.velocity);
     let spatial = o.center.len() == 3;
     let _ = match o.rotation {
@@ -55,6 +71,18 @@ fn obstacle(text: &mut String, n: usize, o: &OracleObstacle) {
         OracleSpin::Planar(rate) => writeln!(text, "angular_velocity = {rate:?}"),
         OracleSpin::Spatial(rate) => writeln!(text, "angular_velocity = {rate:?}"),
     };
+}
+
+fn shape(shape: &OracleShape) -> String {
+    match shape {
+        OracleShape::Ellipsoid { axes, .. } => format!("ellipsoid = {axes:?}"),
+        OracleShape::Box { half, rounding } => format!("box = {half:?}, rounding = {rounding:?}"),
+        OracleShape::Cylinder { radius, half_length, rounding } => {
+            format!("cylinder = [{radius:?}, {half_length:?}], rounding = {rounding:?}")
+        }
+        OracleShape::Capsule { radius, half_length } => format!("capsule = [{radius:?}, {half_length:?}]"),
+        OracleShape::Polygon { vertices } => format!("polygon = {vertices:?}"),
+    }
 }
 
 /// The learnt motion as a model file; none for a linear one.

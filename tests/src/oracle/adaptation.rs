@@ -14,6 +14,11 @@ const FLOOR: f64 = 0.02;
 /// An intersection takes at most this share of the speed.
 const SLOWEST: f64 = 0.8;
 
+/// A Gamma_k below counts as this.
+const DEEPEST: f64 = 1e-9;
+/// A push above counts as this, m/s.
+const HARDEST: f64 = 1e6;
+
 /// What the adaptive motion has to know about an obstacle.
 pub(super) struct Layer {
     pub(super) gamma_soft: f64,
@@ -54,25 +59,35 @@ pub(super) fn adapt(
 
 /// c (2 / (Gamma_k,n + Gamma_k,m))^2
 fn shared_gain(a: &Layer, b: &Layer, gain: f64) -> f64 {
-    gain * (2.0 / (a.gamma_soft + b.gamma_soft)).powi(2)
+    push(gain, 0.5 * (depth(a) + depth(b)))
+}
+
+/// Gamma_k as it is counted.
+fn depth(layer: &Layer) -> f64 {
+    layer.gamma_soft.max(DEEPEST)
+}
+
+/// c / Gamma^2 as it is counted.
+fn push(gain: f64, gamma: f64) -> f64 {
+    (gain / gamma.powi(2)).min(HARDEST)
 }
 
 fn fixed(u: &DVector<f64>, layers: &[Layer], angle: f64, gain: f64) -> DVector<f64> {
-    let push = |layer: &Layer| {
+    let aside = |layer: &Layer| {
         let sign = if alignment(layer, angle) < -1e-6 { -1.0 } else { 1.0 };
         turned_about_z(&layer.radius, angle) * sign
     };
     let soft: Vec<&Layer> = layers.iter().filter(|layer| layer.soft_here).collect();
     match soft.as_slice() {
         [] => u.clone(),
-        [only] => u + push(only) * (gain / only.gamma_soft.powi(2)),
+        [only] => u + aside(only) * push(gain, depth(only)),
         several => {
             let mut slowed = u.clone();
             for (n, own) in several.iter().enumerate() {
                 // All partners of n share the direction, so their gains add up.
                 let partners: f64 =
                     several.iter().enumerate().filter(|(m, _)| *m != n).map(|(_, m)| shared_gain(own, m, gain)).sum();
-                slowed -= in_tangent_plane(&push(own), &own.normal) * partners;
+                slowed -= in_tangent_plane(&aside(own), &own.normal) * partners;
             }
             slowed
         }
@@ -107,7 +122,7 @@ fn with_flow(u: &DVector<f64>, f: &DVector<f64>, layers: &[Layer], gain: f64, be
     for (n, (own, phi)) in active.iter().enumerate() {
         let alone: f64 =
             active.iter().enumerate().filter(|(m, _)| *m != n).map(|(_, (_, other))| 1.0 - other).product();
-        speed_up += &directions[n] * (most.min(gain / own.gamma_soft.powi(2)) * phi * alone);
+        speed_up += &directions[n] * (most.min(push(gain, depth(own))) * phi * alone);
         for (m, (other, other_phi)) in active.iter().enumerate().skip(n + 1) {
             // The two orders of a pair differ in the direction only.
             let size = most.min(shared_gain(own, other, gain)) * phi * other_phi;

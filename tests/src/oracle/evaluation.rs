@@ -1,7 +1,5 @@
 //! All stages at one position.
 
-use std::f64::consts::PI;
-
 use nalgebra::DVector;
 
 use super::adaptation::{Layer, adapt, alignment};
@@ -9,9 +7,10 @@ use super::combination::{combine, weights};
 use super::error::OracleError;
 use super::geometry::{length, vector};
 use super::limits::limit;
-use super::modulation::{FAR, Modulated, modulate, outward_normal, outward_radius};
-use super::motion::nominal;
+use super::modulation::{FAR, Modulated, modulate, modulate_cloud, outward_radius};
+use super::motion::carried;
 use super::obstacle::Body;
+use super::scan::{Cloud, CloudView};
 use super::scene::{OracleScene, OracleSteering, OracleTick};
 
 /// Where a position lies.
@@ -38,9 +37,9 @@ pub struct Evaluation {
     pub adapted: Vec<f64>,
     /// The last stage, section 6. Without an [`OracleTick`] only the speed is limited.
     pub limited: Vec<f64>,
-    /// The smallest Gamma, of all obstacles; infinity without any.
+    /// The smallest Gamma, of all obstacles and points; infinity without any.
     pub min_gamma: f64,
-    /// Which obstacle that is, the first of equals.
+    /// Which obstacle that is, the first of equals; the number of obstacles for the scan.
     pub nearest: Option<usize>,
     /// Where the position lies.
     pub region: Region,
@@ -48,6 +47,8 @@ pub struct Evaluation {
     pub mixture: Vec<f64>,
     /// Every obstacle, in the order of the scene.
     pub obstacles: Vec<ObstacleView>,
+    /// The scan as an obstacle, where there is one.
+    pub scan: Option<ObstacleView>,
     /// How far the switches of the method are.
     pub switches: Switches,
 }
@@ -86,13 +87,11 @@ pub struct Switches {
     pub soft: f64,
     /// Least |Gamma / 1e15 - 1|.
     pub far: f64,
-    /// Least distance of the cosine between gradient and radius from its threshold, of the obstacles that count.
+    /// Least distance of g.r / (|g|_1 |r|_1) from its threshold, of the obstacles that count.
     pub reference: f64,
-    /// Least angle between a combined velocity and the exact opposite of f, rad; pi for fewer than two obstacles.
-    pub opposite: f64,
     /// Least |cos(theta - theta_1)| of the obstacles that are soft here, for `fixed`; infinity otherwise.
     pub sign: f64,
-    /// |f|, m/s.
+    /// |f| relative to the attractor, m/s.
     pub standstill: f64,
     /// Relative gap between the two smallest Gammas: which obstacle is nearest.
     pub nearest: f64,
@@ -111,32 +110,30 @@ pub fn evaluate(scene: &OracleScene, x: &[f64], tick: Option<&OracleTick>) -> Re
         return Err(OracleError::Value("gain"));
     }
     let x = vector(x, d, "position")?;
-    let (f, mixture) = nominal(&scene.motion, &x)?;
-    let bodies = scene
-        .obstacles
-        .iter()
-        .map(|obstacle| Body::new(obstacle, d, scene.method))
-        .collect::<Result<Vec<Body>, _>>()?;
+    let nominal = carried(&scene.motion, scene.drift.as_ref(), &x)?;
+    let f = nominal.velocity;
+    let bodies = bodies(scene)?;
+    let cloud = cloud(scene)?.map(|cloud| cloud.at(&x));
     let gammas: Vec<f64> = bodies.iter().map(|body| body.gamma(&x)).collect();
 
-    let counted: Vec<usize> = (0..bodies.len()).filter(|n| gammas[*n] < FAR).collect();
-    let modulated: Vec<Modulated> = counted.iter().map(|n| modulate(&bodies[*n], &x, &f)).collect();
-    let shares = weights(&counted.iter().map(|n| gammas[*n]).collect::<Vec<f64>>());
-    let (u, to_opposite) = match modulated.as_slice() {
-        [] => (f.clone(), PI),
-        [only] => (only.velocity.clone(), PI),
-        several => {
-            let velocities: Vec<DVector<f64>> = several.iter().map(|m| m.velocity.clone()).collect();
-            let combined = combine(&f, &velocities, &shares);
-            (combined.velocity, combined.to_opposite)
-        }
+    // The scan is one more obstacle, the last.
+    let mut seen: Vec<(f64, Modulated)> =
+        bodies.iter().zip(&gammas).map(|(body, gamma)| (*gamma, modulate(body, &x, &f))).collect();
+    seen.extend(cloud.iter().map(|cloud| (cloud.gamma, modulate_cloud(cloud, &f))));
+    let counted: Vec<usize> = (0..seen.len()).filter(|n| seen[*n].0 < FAR).collect();
+    let shares = weights(&counted.iter().map(|n| seen[*n].0).collect::<Vec<f64>>());
+    let velocities: Vec<DVector<f64>> = counted.iter().map(|n| seen[*n].1.velocity.clone()).collect();
+    let u = match velocities.as_slice() {
+        [] => f.clone(),
+        [only] => only.clone(),
+        several => combine(&f, several, &shares),
     };
 
     let layers: Vec<Layer> = bodies.iter().zip(&gammas).map(|(body, gamma)| layer(body, *gamma, &x)).collect();
-    let adapted = adapt(&u, &f, &layers, scene.steering, scene.gain);
+    let adapted = adapt(&u, &nominal.relative, &layers, scene.steering, scene.gain);
     let limited = limit(&adapted, &scene.limits, tick)?;
 
-    let mut obstacles: Vec<ObstacleView> = bodies
+    let mut views: Vec<ObstacleView> = bodies
         .iter()
         .zip(&layers)
         .zip(&gammas)
@@ -152,32 +149,36 @@ pub fn evaluate(scene: &OracleScene, x: &[f64], tick: Option<&OracleTick>) -> Re
             soft_here: layer.soft_here,
             fade: layer.fade(),
         })
+        .chain(cloud.iter().map(|cloud| cloud_view(cloud, &f)))
         .collect();
-    for ((n, m), share) in counted.iter().zip(&modulated).zip(&shares) {
-        let view = &mut obstacles[*n];
-        view.velocity = plain(&m.velocity);
+    for ((n, velocity), share) in counted.iter().zip(&velocities).zip(&shares) {
+        let view = &mut views[*n];
+        view.velocity = plain(velocity);
         view.weight = *share;
         view.counted = true;
-        view.reference_usable = m.usable;
+        view.reference_usable = seen[*n].1.usable;
     }
+    let scan = cloud.as_ref().and_then(|_| views.pop());
 
-    let nearest = (0..gammas.len()).min_by(|a, b| gammas[*a].total_cmp(&gammas[*b]));
-    let min_gamma = nearest.map_or(f64::INFINITY, |n| gammas[n]);
+    let mut reported = gammas.clone();
+    reported.extend(cloud.iter().map(|cloud| cloud.least));
+    let nearest = (0..reported.len()).min_by(|a, b| reported[*a].total_cmp(&reported[*b]));
+    let min_gamma = nearest.map_or(f64::INFINITY, |n| reported[n]);
     let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
+    let to_points = cloud.iter().map(|cloud| cloud.to_surface);
     let switches = Switches {
-        hard: least(&mut gammas.iter().map(|gamma| (gamma - 1.0).abs())),
+        hard: least(&mut gammas.iter().map(|gamma| (gamma - 1.0).abs()).chain(to_points)),
         soft: least(&mut layers.iter().map(|layer| (layer.gamma_soft - 1.0).abs())),
-        far: least(&mut gammas.iter().map(|gamma| (gamma / FAR - 1.0).abs())),
-        reference: least(&mut modulated.iter().map(Modulated::to_threshold)),
-        opposite: to_opposite,
+        far: least(&mut seen.iter().map(|(gamma, _)| (gamma / FAR - 1.0).abs())),
+        reference: least(&mut counted.iter().map(|n| seen[*n].1.to_threshold())),
         sign: match scene.steering {
             OracleSteering::WithFlow { .. } => f64::INFINITY,
             OracleSteering::Fixed { angle } => {
                 least(&mut layers.iter().filter(|layer| layer.soft_here).map(|layer| alignment(layer, angle).abs()))
             }
         },
-        standstill: length(&f),
-        nearest: least(&mut (0..gammas.len()).filter(|n| Some(*n) != nearest).map(|n| gammas[n] / min_gamma - 1.0)),
+        standstill: length(&nominal.relative),
+        nearest: least(&mut (0..reported.len()).filter(|n| Some(*n) != nearest).map(|n| reported[n] / min_gamma - 1.0)),
     };
     Ok(Evaluation {
         nominal: plain(&f),
@@ -186,11 +187,37 @@ pub fn evaluate(scene: &OracleScene, x: &[f64], tick: Option<&OracleTick>) -> Re
         limited: plain(&limited),
         min_gamma,
         nearest,
-        region: region(&bodies, &x),
-        mixture,
-        obstacles,
+        region: region(&bodies, cloud.as_ref().map_or(f64::INFINITY, |cloud| cloud.least), &x),
+        mixture: nominal.mixture,
+        obstacles: views,
+        scan,
         switches,
     })
+}
+
+/// The obstacles of a scene, checked.
+pub(super) fn bodies(scene: &OracleScene) -> Result<Vec<Body>, OracleError> {
+    scene.obstacles.iter().map(|obstacle| Body::new(obstacle, scene.dimension, scene.method)).collect()
+}
+
+/// The scan of a scene, checked.
+pub(super) fn cloud(scene: &OracleScene) -> Result<Option<Cloud>, OracleError> {
+    Ok(scene.scan.as_ref().map(|scan| Cloud::new(scan, scene.dimension)).transpose()?.flatten())
+}
+
+fn cloud_view(cloud: &CloudView, f: &DVector<f64>) -> ObstacleView {
+    ObstacleView {
+        gamma: cloud.gamma,
+        gamma_soft: cloud.gamma,
+        normal: plain(&cloud.normal),
+        surface_velocity: vec![0.0; f.len()],
+        velocity: plain(f),
+        weight: 0.0,
+        counted: false,
+        reference_usable: true,
+        soft_here: false,
+        fade: 0.0,
+    }
 }
 
 fn layer(body: &Body, gamma: f64, x: &DVector<f64>) -> Layer {
@@ -198,15 +225,15 @@ fn layer(body: &Body, gamma: f64, x: &DVector<f64>) -> Layer {
     Layer {
         gamma_soft,
         soft_here: gamma > 1.0 && gamma_soft <= 1.0,
-        normal: outward_normal(body, x),
+        normal: body.normal(x),
         radius: outward_radius(body, x),
         heading: body.heading(),
     }
 }
 
-/// Where a position lies, from the obstacles alone.
-pub(super) fn region(bodies: &[Body], x: &DVector<f64>) -> Region {
-    if bodies.iter().any(|body| body.gamma(x) <= 1.0) {
+/// Where a position lies, from the obstacles and the least Gamma of a scan alone.
+pub(super) fn region(bodies: &[Body], scan: f64, x: &DVector<f64>) -> Region {
+    if scan <= 1.0 || bodies.iter().any(|body| body.gamma(x) <= 1.0) {
         return Region::Hard;
     }
     match bodies.iter().filter(|body| body.gamma_soft(x) <= 1.0).count() {

@@ -4,42 +4,62 @@ use nalgebra::{DMatrix, DVector};
 
 use super::geometry::{length, tangents, unit};
 use super::obstacle::Body;
+use super::scan::CloudView;
 
-/// An obstacle whose reference point is seen from further off than this (cosine to the gradient) is unusable.
-const USABLE_COSINE: f64 = 1e-6;
+/// An obstacle whose reference point is seen from further off than this is unusable: the product of gradient and radius
+/// over that of their sums of absolute values.
+const USABLE: f64 = 1e-6;
 /// An obstacle this far away does not change a digit.
 pub(super) const FAR: f64 = 1e15;
 
 /// What one obstacle makes of the flow.
 pub(super) struct Modulated {
     pub(super) velocity: DVector<f64>,
-    /// Cosine between the gradient and the direction from the reference point; 0 at the centre.
-    pub(super) cosine: f64,
+    /// How well the reference point is seen, compared with [`USABLE`]; 0 at the centre.
+    pub(super) sight: f64,
     pub(super) usable: bool,
 }
 
 impl Modulated {
-    /// Distance of the cosine from the threshold of use.
+    /// Distance of the sight from the threshold of use.
     pub(super) fn to_threshold(&self) -> f64 {
-        (self.cosine - USABLE_COSINE).abs()
+        (self.sight - USABLE).abs()
     }
 }
 
 /// xdot_n = s + M (f - s).
 pub(super) fn modulate(body: &Body, x: &DVector<f64>, f: &DVector<f64>) -> Modulated {
     let surface = body.surface_velocity(x);
-    let normal = unit(&body.gradient(x));
-    let radial = unit(&body.radius(x));
-    let (Some(normal), Some(radial)) = (normal, radial) else {
-        return Modulated { velocity: surface, cosine: 0.0, usable: false };
+    // The reference point of a wall is on the free side of it: r goes against n. Which way round r is taken makes no
+    // difference to the flow, only to whether the point counts as seen.
+    let radius = if body.wall { -body.radius(x) } else { body.radius(x) };
+    along(&body.normal(x), &radius, body.gamma(x), &surface, f)
+}
+
+/// The same for a scan, which is at rest and seen along its normal.
+pub(super) fn modulate_cloud(cloud: &CloudView, f: &DVector<f64>) -> Modulated {
+    along(&cloud.normal, &cloud.normal, cloud.gamma, &DVector::zeros(f.len()), f)
+}
+
+fn along(
+    normal: &DVector<f64>,
+    radius: &DVector<f64>,
+    gamma: f64,
+    surface: &DVector<f64>,
+    f: &DVector<f64>,
+) -> Modulated {
+    let unusable = |sight| Modulated { velocity: surface.clone(), sight, usable: false };
+    let (Some(normal), Some(radial)) = (unit(normal), unit(radius)) else {
+        return unusable(0.0);
     };
-    let cosine = normal.dot(&radial);
-    if cosine <= USABLE_COSINE {
-        return Modulated { velocity: surface, cosine, usable: false };
+    let sum = |v: &DVector<f64>| v.iter().map(|c| c.abs()).sum::<f64>();
+    let sight = normal.dot(&radial) / (sum(&normal) * sum(&radial));
+    if sight <= USABLE {
+        return unusable(sight);
     }
-    match modulation_matrix(&radial, &normal, body.gamma(x)) {
-        Some(m) => Modulated { velocity: &surface + m * (f - &surface), cosine, usable: true },
-        None => Modulated { velocity: surface, cosine, usable: false },
+    match modulation_matrix(&radial, &normal, gamma) {
+        Some(m) => Modulated { velocity: surface + m * (f - surface), sight, usable: true },
+        None => unusable(sight),
     }
 }
 
@@ -53,11 +73,6 @@ fn modulation_matrix(radial: &DVector<f64>, normal: &DVector<f64>, gamma: f64) -
     let e = DMatrix::from_columns(&columns);
     let inverse = e.clone().try_inverse()?;
     Some(e * DMatrix::from_diagonal(&eigenvalues) * inverse)
-}
-
-/// The outward unit normal; zero at the centre, where there is none.
-pub(super) fn outward_normal(body: &Body, x: &DVector<f64>) -> DVector<f64> {
-    unit(&body.gradient(x)).unwrap_or_else(|| DVector::zeros(x.len()))
 }
 
 /// The unit vector from the reference point; zero at that point.
@@ -83,10 +98,9 @@ mod tests {
     fn tilted() -> OracleObstacle {
         OracleObstacle {
             rotation: OracleRotation::Quaternion([0.7, 0.1, -0.4, 0.5]),
-            curvature: 2,
             margin: vec![1.0, 1.2, 1.1],
             reference: vec![0.1, -0.1, 0.05],
-            ..OracleObstacle::still(&[0.2, -0.1, 0.4], &[0.6, 0.4, 0.5])
+            ..OracleObstacle::still(&[0.2, -0.1, 0.4], &[0.6, 0.4, 0.5]).curved(2)
         }
     }
 
@@ -120,11 +134,10 @@ mod tests {
         let body = body(&obstacle);
         for direction in [[1.0, 0.3, -0.2], [-0.4, 1.0, 0.9], [0.1, -0.2, 1.0], [-1.0, -1.0, -1.0]] {
             let q = v(&direction);
-            let onto = body.gamma(&body.world(&q)).powf(-1.0 / body.exponent);
-            let x = body.world(&(q * onto));
+            let x = body.world(&(&q * body.reach(&q, 1.0, false)));
             assert!((body.gamma(&x) - 1.0).abs() < 1e-13);
             let relative = modulate(&body, &x, &v(&[1.0, 2.0, -1.5])).velocity - body.surface_velocity(&x);
-            assert!(outward_normal(&body, &x).dot(&relative).abs() < 1e-12);
+            assert!(body.normal(&x).dot(&relative).abs() < 1e-12);
             assert!(length(&relative) > 0.1);
         }
     }
@@ -167,7 +180,40 @@ mod tests {
         // Between the centre and the reference point the gradient looks towards that point.
         obstacle.reference = vec![0.5, 0.0];
         let between = modulate(&body(&obstacle), &v(&[0.2, 0.0]), &v(&[1.0, 0.0]));
-        assert!(!between.usable && between.cosine < 0.0);
+        assert!(!between.usable && between.sight < 0.0);
         assert!(modulate(&body(&obstacle), &v(&[0.7, 0.0]), &v(&[1.0, 0.0])).usable);
+    }
+
+    #[test]
+    fn nothing_flows_through_a_wall() {
+        let mut wall = tilted().inside_out();
+        wall.growth = 0.07;
+        let body = body(&wall);
+        for direction in [[1.0, 0.3, -0.2], [-0.4, 1.0, 0.9], [0.1, -0.2, 1.0]] {
+            let q = unit(&v(&direction)).unwrap();
+            let x = body.world(&(&q * body.reach(&q, 1.0, false)));
+            let seen = modulate(&body, &x, &v(&[1.0, 2.0, -1.5]));
+            assert!(seen.usable);
+            assert!(body.normal(&x).dot(&(seen.velocity - body.surface_velocity(&x))).abs() < 1e-12);
+            assert!(body.normal(&x).dot(&(&body.center - &x)) > 0.0);
+        }
+    }
+
+    #[test]
+    fn a_scan_is_seen_along_its_normal() {
+        // Gamma = 4: 3/4 of the flow along n = (0.6, 0.8), 5/4 across.
+        let cloud = CloudView { least: 3.0, gamma: 4.0, normal: v(&[0.6, 0.8]), to_surface: 2.0 };
+        assert!((modulate_cloud(&cloud, &v(&[-0.6, -0.8])).velocity - v(&[-0.45, -0.6])).amax() < 1e-15);
+        assert!((modulate_cloud(&cloud, &v(&[-0.8, 0.6])).velocity - v(&[-1.0, 0.75])).amax() < 1e-15);
+    }
+
+    #[test]
+    fn the_threshold_is_on_sums_of_absolute_values() {
+        // n = (0, 1), r = (1, 3e-6) keeps 3e-6 of both, r = (1, 1, 0.9e-6) does not.
+        let flat = |r: &[f64], n: &[f64]| along(&v(n), &v(r), 2.0, &v(&vec![0.0; r.len()]), &v(&vec![1.0; r.len()]));
+        assert!(flat(&[1.0, 1.1e-6], &[0.0, 1.0]).usable);
+        assert!(!flat(&[1.0, 0.9e-6], &[0.0, 1.0]).usable);
+        assert!(flat(&[1.0, 1.0, 2.1e-6], &[0.0, 0.0, 1.0]).usable);
+        assert!(!flat(&[1.0, 1.0, 1.9e-6], &[0.0, 0.0, 1.0]).usable);
     }
 }

@@ -4,10 +4,36 @@ use nalgebra::DVector;
 
 use super::error::OracleError;
 use super::geometry::{matrix, vector};
-use super::scene::{OracleComponent, OracleMotion};
+use super::scene::{OracleComponent, OracleDrift, OracleMotion};
 
-/// f(x), and the weights of the mixture (empty for a linear motion).
-pub(super) fn nominal(motion: &OracleMotion, x: &DVector<f64>) -> Result<(DVector<f64>, Vec<f64>), OracleError> {
+/// The nominal motion at a position.
+pub(super) struct Nominal {
+    /// f.
+    pub(super) velocity: DVector<f64>,
+    /// f less the velocity of the attractor.
+    pub(super) relative: DVector<f64>,
+    /// The weights of the mixture; empty for a linear motion.
+    pub(super) mixture: Vec<f64>,
+}
+
+/// f(x, t), wherever the attractor has gone.
+pub(super) fn carried(
+    motion: &OracleMotion,
+    drift: Option<&OracleDrift>,
+    x: &DVector<f64>,
+) -> Result<Nominal, OracleError> {
+    let Some(drift) = drift else {
+        let (velocity, mixture) = nominal(motion, x)?;
+        return Ok(Nominal { relative: velocity.clone(), velocity, mixture });
+    };
+    let d = x.len();
+    let learnt = x - vector(&drift.displacement, d, "displacement")?;
+    let (relative, mixture) = nominal(motion, &learnt)?;
+    Ok(Nominal { velocity: &relative + vector(&drift.velocity, d, "velocity of the attractor")?, relative, mixture })
+}
+
+/// f0(x), and the weights of the mixture.
+fn nominal(motion: &OracleMotion, x: &DVector<f64>) -> Result<(DVector<f64>, Vec<f64>), OracleError> {
     let d = x.len();
     let offset = x - vector(motion.attractor(), d, "attractor")?;
     match motion {
@@ -129,5 +155,17 @@ mod tests {
         flat.covariance = vec![vec![1.0, 1.0], vec![1.0, 1.0]];
         let refused = nominal(&lpv(vec![flat]), &DVector::from_column_slice(&[1.0, 1.0]));
         assert_eq!(refused.err(), Some(OracleError::Singular("covariance")));
+    }
+
+    #[test]
+    fn a_moving_attractor_carries_the_motion() {
+        let x = DVector::from_column_slice(&[0.4, -0.1]);
+        let motion = lpv(vec![component(0.5, [0.1, 0.0], 0.2, 1.0), component(0.5, [0.6, 0.3], 0.1, 2.0)]);
+        let drift = OracleDrift { displacement: vec![0.3, 0.2], velocity: vec![-1.0, 0.5] };
+        let seen = carried(&motion, Some(&drift), &x).unwrap();
+        let there = carried(&motion, None, &DVector::from_column_slice(&[0.4 - 0.3, -0.1 - 0.2])).unwrap();
+        assert_eq!(seen.relative, there.velocity);
+        assert_eq!(seen.mixture, there.mixture);
+        assert!((seen.velocity - there.velocity - DVector::from_column_slice(&[-1.0, 0.5])).amax() < 1e-15);
     }
 }

@@ -5,11 +5,12 @@ use std::f64::consts::PI;
 use nalgebra::DVector;
 use proptest::prelude::*;
 
+use super::carry::product;
 use super::geometry::{length, rotation_matrix, turned_about_z};
 use super::random_scene::{PointKind, RandomScene, Recipe, generate, generate_from};
 use super::{
-    Evaluation, OracleLimits, OracleMethod, OracleMotion, OracleObstacle, OracleRotation, OracleScene, OracleSpin,
-    OracleSteering, evaluate,
+    Evaluation, ObstacleView, OracleLimits, OracleMethod, OracleMotion, OracleObstacle, OracleRotation, OracleScene,
+    OracleShape, OracleSpin, OracleSteering, evaluate,
 };
 
 fn norm(v: &[f64]) -> f64 {
@@ -28,8 +29,8 @@ fn at(random: &RandomScene, x: &[f64]) -> Evaluation {
 fn settled(seen: &Evaluation) -> bool {
     let near = &seen.switches;
     [near.hard, near.soft, near.far, near.reference, near.nearest].iter().all(|distance| *distance > 1e-7)
-        && near.opposite > 1e-3
         && near.sign > 1e-7
+        && norm(&seen.nominal) > 1e-3
         && near.standstill > 1e-3
 }
 
@@ -59,6 +60,12 @@ fn moved(
     if let OracleMotion::Linear { attractor, .. } = &mut image.motion {
         *attractor = point(attractor);
     }
+    if let Some(scan) = &mut image.scan {
+        scan.points.iter_mut().for_each(|p| *p = point(p));
+    }
+    if let Some(drift) = &mut image.drift {
+        (drift.displacement, drift.velocity) = (vector(&drift.displacement), vector(&drift.velocity));
+    }
     for obstacle in &mut image.obstacles {
         obstacle.center = point(&obstacle.center);
         obstacle.velocity = vector(&obstacle.velocity);
@@ -75,15 +82,6 @@ fn linear(dimension: usize) -> Recipe {
     Recipe { lpv: 0.0, ..Recipe::new(dimension) }
 }
 
-fn hamilton(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
-    [
-        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
-    ]
-}
-
 /// A scene of the plane at z = 0 in space.
 fn lifted(scene: &OracleScene) -> OracleScene {
     let with_zero = |v: &[f64], z: f64| vec![v[0], v[1], z];
@@ -96,7 +94,15 @@ fn lifted(scene: &OracleScene) -> OracleScene {
         .iter()
         .map(|flat| OracleObstacle {
             center: with_zero(&flat.center, 0.0),
-            axes: with_zero(&flat.axes, 0.3),
+            shape: match &flat.shape {
+                OracleShape::Ellipsoid { axes, curvature } => {
+                    OracleShape::Ellipsoid { axes: with_zero(axes, 0.3), curvature: *curvature }
+                }
+                OracleShape::Box { half, rounding } => {
+                    OracleShape::Box { half: with_zero(half, rounding + 0.3), rounding: *rounding }
+                }
+                other => other.clone(),
+            },
             soft_ratio: with_zero(&flat.soft_ratio, 1.4),
             margin: with_zero(&flat.margin, 1.1),
             reference: with_zero(&flat.reference, 0.0),
@@ -104,6 +110,13 @@ fn lifted(scene: &OracleScene) -> OracleScene {
             ..flat.clone()
         })
         .collect();
+    if let Some(scan) = &mut space.scan {
+        scan.points.iter_mut().for_each(|p| p.push(0.0));
+    }
+    if let Some(drift) = &mut space.drift {
+        drift.displacement.push(0.0);
+        drift.velocity.push(0.0);
+    }
     space
 }
 
@@ -118,8 +131,9 @@ proptest! {
             for stage in [&seen.nominal, &seen.modulated, &seen.adapted, &seen.limited] {
                 prop_assert!(stage.iter().all(|c| c.is_finite()));
             }
-            let sum: f64 = seen.obstacles.iter().map(|o| o.weight).sum();
-            prop_assert!((sum - 1.0).abs() < 1e-13 || seen.obstacles.iter().all(|o| !o.counted));
+            let sum: f64 = seen.obstacles.iter().chain(&seen.scan).map(|o| o.weight).sum();
+            let all = || seen.obstacles.iter().chain(&seen.scan);
+            prop_assert!((sum - 1.0).abs() < 1e-13 || all().all(|o| !o.counted));
             if !seen.mixture.is_empty() {
                 prop_assert!((seen.mixture.iter().sum::<f64>() - 1.0).abs() < 1e-13);
             }
@@ -143,7 +157,7 @@ proptest! {
 
     #[test]
     fn a_single_obstacle_is_the_closed_form(seed: u64, dimension in 2_usize..=3) {
-        let random = generate_from(&Recipe { obstacles: 1..=1, ..Recipe::new(dimension) }, seed, 3);
+        let random = generate_from(&Recipe { obstacles: 1..=1, scans: 0.0, ..Recipe::new(dimension) }, seed, 3);
         let obstacle = &random.scene.obstacles[0];
         let rotation = rotation_matrix(obstacle.rotation, dimension).unwrap();
         for (x, seen) in settled_points(&random) {
@@ -152,10 +166,12 @@ proptest! {
             let u = v(&seen.nominal) - &s;
             let n = v(&seen.obstacles[0].normal);
             let r = v(&x) - v(&obstacle.center) - &rotation * v(&obstacle.reference);
+            let r = if obstacle.wall { -r } else { r };
             let cosine = n.dot(&r) / length(&r);
+            let sum = |v: &DVector<f64>| v.iter().map(|c| c.abs()).sum::<f64>();
             let expected = if !seen.obstacles[0].counted {
                 v(&seen.nominal)
-            } else if cosine <= 1e-6 {
+            } else if n.dot(&r) <= 1e-6 * sum(&n) * sum(&r) {
                 s
             } else {
                 let inverse = 1.0 / seen.min_gamma.max(1.0);
@@ -172,7 +188,7 @@ proptest! {
         for point in random.points.iter().filter(|point| point.kind == PointKind::Surface) {
             let seen = at(&random, &point.x);
             let Some(nearest) = seen.nearest else { continue };
-            let obstacle = &seen.obstacles[nearest];
+            let Some(obstacle) = seen.obstacles.get(nearest) else { continue };
             // The part along the radius keeps 1 - 1/Gamma; the weights of the others vanish as fast.
             let through: f64 = obstacle.normal.iter().zip(&seen.modulated).zip(&obstacle.surface_velocity)
                 .map(|((n, u), s)| n * (u - s)).sum();
@@ -183,11 +199,15 @@ proptest! {
 
     #[test]
     fn the_speed_is_the_weighted_mean(seed: u64) {
-        let random = generate_from(&Recipe { obstacles: 2..=6, ..Recipe::new(2) }, seed, 3);
+        // Nothing turns back among obstacles at rest, and nothing fades.
+        let recipe = Recipe { obstacles: 2..=6, moving: 0.0, growing: 0.0, ..Recipe::new(2) };
+        let random = generate_from(&recipe, seed, 3);
         for point in &random.points {
             let seen = at(&random, &point.x);
-            if seen.obstacles.iter().filter(|o| o.counted).count() >= 2 && seen.switches.standstill > 0.0 {
-                let mean: f64 = seen.obstacles.iter().map(|o| o.weight * norm(&o.velocity)).sum();
+            let all = || seen.obstacles.iter().chain(&seen.scan).filter(|o| o.counted);
+            let turns = |o: &ObstacleView| o.velocity.iter().zip(&seen.nominal).map(|(v, f)| v * f).sum::<f64>() < 0.0;
+            let mean: f64 = all().map(|o| o.weight * norm(&o.velocity)).sum();
+            if all().count() >= 2 && norm(&seen.nominal) > 0.05 * mean && !all().any(turns) {
                 prop_assert!((norm(&seen.modulated) - mean).abs() < 1e-12 * scale(&seen));
             }
         }
@@ -198,11 +218,12 @@ proptest! {
         let random = generate(seed, 3);
         let mut turned = random.clone();
         turned.scene.obstacles.reverse();
+        let count = random.scene.obstacles.len();
         for (x, seen) in settled_points(&random) {
             let other = at(&turned, &x);
             prop_assert!(difference(&seen.adapted, &other.adapted) < 1e-11 * scale(&seen));
             prop_assert_eq!(seen.region, other.region);
-            prop_assert_eq!(seen.nearest, other.nearest.map(|n| random.scene.obstacles.len() - 1 - n));
+            prop_assert_eq!(seen.nearest, other.nearest.map(|n| if n < count { count - 1 - n } else { n }));
         }
     }
 
@@ -245,7 +266,7 @@ proptest! {
         let turn = |v: &[f64]| (&matrix * DVector::from_column_slice(v)).as_slice().to_vec();
         let mut elsewhere = random.clone();
         elsewhere.scene = moved(&random.scene, turn, turn, |rotation| match rotation {
-            OracleRotation::Quaternion(own) => OracleRotation::Quaternion(hamilton(half, own)),
+            OracleRotation::Quaternion(own) => OracleRotation::Quaternion(product(half, own)),
             other => other,
         });
         for (x, seen) in settled_points(&random) {
@@ -257,7 +278,9 @@ proptest! {
 
     #[test]
     fn the_plane_is_a_part_of_space(seed: u64) {
-        let random = generate_from(&linear(2), seed, 3);
+        let recipe = Recipe { walls: 0.0, growing: 0.0, ..linear(2) };
+        let random = generate_from(&recipe, seed, 3);
+        prop_assume!(random.scene.obstacles.iter().all(|o| !matches!(o.shape, OracleShape::Polygon { .. })));
         let space = lifted(&random.scene);
         for (x, seen) in settled_points(&random) {
             let other = evaluate(&space, &[x[0], x[1], 0.0], None).unwrap();
@@ -281,8 +304,13 @@ proptest! {
             *gain *= factor;
         }
         scene.gain *= factor;
+        if let Some(drift) = &mut scene.drift {
+            drift.velocity.iter_mut().for_each(|v| *v *= factor);
+        }
         for obstacle in &mut scene.obstacles {
             obstacle.velocity.iter_mut().for_each(|v| *v *= factor);
+            obstacle.growth *= factor;
+            obstacle.ageing *= factor;
             if let OracleSpin::Spatial(w) = &mut obstacle.spin {
                 w.iter_mut().for_each(|c| *c *= factor);
             }
@@ -328,7 +356,7 @@ proptest! {
                 .map(|n| fades[n] * (0..fades.len()).filter(|m| *m != n).map(|m| 1.0 - fades[m]).product::<f64>())
                 .sum();
             prop_assert!(speed_up < 1.0 + 1e-12);
-            let most = beta * norm(&seen.nominal) * speed_up + 0.8 * norm(&seen.modulated);
+            let most = beta * seen.switches.standstill * speed_up + 0.8 * norm(&seen.modulated);
             prop_assert!(norm(&push) <= most * (1.0 + 1e-12) + 1e-15);
             if fades.iter().all(|phi| *phi == 0.0) {
                 prop_assert_eq!(&seen.adapted, &seen.modulated);
@@ -337,19 +365,20 @@ proptest! {
     }
 }
 
-/// Least Gamma - 1 of the obstacles other than the nearest.
+/// Least Gamma - 1 of the obstacles other than the nearest, and of the scan.
 fn gap(seen: &Evaluation, nearest: usize) -> f64 {
     seen.obstacles
         .iter()
+        .chain(&seen.scan)
         .enumerate()
         .filter(|(n, _)| *n != nearest)
         .map(|(_, o)| o.gamma - 1.0)
         .fold(f64::INFINITY, f64::min)
 }
 
-/// How much an input's rounding is magnified: by Gamma - 1 in the weights, near a switch of direction, by the
+/// How much an input's rounding is magnified: by Gamma - 1 in the weights, by the
 /// small nominal speed in the tangential direction, and inside a core by an oblique reference point.
 fn sensitivity(seen: &Evaluation) -> f64 {
     let near = &seen.switches;
-    1.0 + 1.0 / near.hard + 1.0 / near.opposite + scale(seen) / near.standstill + 1.0 / near.reference
+    1.0 + 1.0 / near.hard + scale(seen) / near.standstill + 1.0 / near.reference
 }

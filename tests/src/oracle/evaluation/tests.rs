@@ -1,4 +1,6 @@
-use super::super::scene::{OracleLimits, OracleMethod, OracleMotion, OracleObstacle, OracleSpin};
+use super::super::scene::{
+    OracleDrift, OracleLimits, OracleMethod, OracleMotion, OracleObstacle, OracleScan, OracleSpin,
+};
 use super::*;
 
 const FREE_OF_LIMITS: OracleLimits = OracleLimits { speed: f64::INFINITY, acceleration: None };
@@ -12,6 +14,9 @@ fn scene(attractor: &[f64], obstacles: Vec<OracleObstacle>) -> OracleScene {
         steering: OracleSteering::WithFlow { beta: 1.0 },
         gain: 0.1,
         limits: FREE_OF_LIMITS,
+        scan: None,
+        drift: None,
+        guard: None,
     }
 }
 
@@ -47,8 +52,7 @@ fn one_obstacle_is_its_own_modulation() {
 #[test]
 fn obstacles_that_are_too_far_are_left_out() {
     // Gamma = (900 / 0.01)^4 = 6.6e19 and (800 / 0.001)^2 = 6.4e11.
-    let mut sharp = OracleObstacle::still(&[900.0, 0.0], &[0.01, 0.01]);
-    sharp.curvature = 2;
+    let mut sharp = OracleObstacle::still(&[900.0, 0.0], &[0.01, 0.01]).curved(2);
     sharp.velocity = vec![5.0, 5.0];
     let small = OracleObstacle::still(&[0.0, 800.0], &[0.001, 0.001]);
     let seen = at(&scene(&[1.0, 0.0], vec![sharp.clone()]), &[0.0, 0.0]);
@@ -177,7 +181,7 @@ fn a_moving_obstacle_carries_its_surface_along() {
 }
 
 #[test]
-fn an_oncoming_pair_turns_the_robot_to_the_fixed_side() {
+fn an_oncoming_pair_averages_to_where_they_go() {
     // Everything on one line: one obstacle drives back towards the robot, the other leaves f alone in direction.
     let mut oncoming = OracleObstacle::still(&[2.0, 0.0], &[1.0, 1.0]);
     oncoming.velocity = vec![-6.0, 0.0];
@@ -187,8 +191,59 @@ fn an_oncoming_pair_turns_the_robot_to_the_fixed_side() {
     let (first, second) = (-6.0 + 65.0 / 18.0, 5.0 / 18.0);
     close(&seen.obstacles[0].velocity, &[first, 0.0], 1e-14);
     close(&seen.obstacles[1].velocity, &[second, 0.0], 1e-14);
-    close(&seen.modulated, &[0.0, (second - first) / 2.0], 1e-14);
-    assert_eq!(seen.switches.opposite, 0.0);
+    close(&seen.modulated, &[(second + first) / 2.0, 0.0], 1e-14);
+}
+
+#[test]
+fn past_the_opposite_of_f_nothing_jumps() {
+    let mut oncoming = OracleObstacle::still(&[2.0, 0.0], &[1.0, 1.0]);
+    oncoming.velocity = vec![-6.0, 0.3];
+    let behind = OracleObstacle::still(&[-1.0, 0.1], &[1.0, 1.0]);
+    let scene = scene(&[1.0, 0.0], vec![oncoming, behind]);
+    let on = |i: i32| at(&scene, &[0.5, -0.2 + 1e-4 * f64::from(i)]).modulated;
+    let jump = (0..4000).map(|i| (on(i), on(i + 1))).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
+    assert!(jump.fold(0.0, f64::max) < 0.02);
+}
+
+#[test]
+fn a_scan_counts_as_one_obstacle() {
+    // Gamma = 4 along the axis, as one_obstacle_is_its_own_modulation.
+    let mut scene = scene(&[-4.0, 0.0], vec![]);
+    scene.scan = Some(OracleScan { points: vec![vec![0.0, 0.0]], radius: 1.0 });
+    let seen = at(&scene, &[2.0, 0.0]);
+    close(&seen.modulated, &[-4.5, 0.0], 1e-14);
+    assert_eq!((seen.min_gamma, seen.nearest, seen.region), (4.0, Some(0), Region::Free));
+    // With a disc of the same size it shares the weight; and neither has a layer.
+    scene.obstacles = vec![OracleObstacle::still(&[2.0, 2.0], &[1.0, 1.0])];
+    let seen = at(&scene, &[2.0, 0.0]);
+    assert_eq!((seen.obstacles[0].weight, seen.scan.as_ref().unwrap().weight), (0.5, 0.5));
+    assert_eq!(seen.adapted, seen.modulated);
+    assert_eq!(at(&scene, &[0.9, 0.0]).region, Region::Hard);
+}
+
+#[test]
+fn a_wall_holds_the_flow_back() {
+    // Gamma = 4 half way to the wall of radius 2: 3/4 of the outward flow, 5/4 of what goes along.
+    let walled = scene(&[4.0, 0.0], vec![OracleObstacle::still(&[0.0, 0.0], &[2.0, 2.0]).inside_out()]);
+    close(&at(&walled, &[1.0, 0.0]).modulated, &[2.25, 0.0], 1e-14);
+    close(&at(&walled, &[0.0, 1.0]).modulated, &[5.0, -0.75], 1e-14);
+    let on = at(&walled, &[2.0, 0.0]);
+    close(&on.modulated, &[0.0, 0.0], 1e-14);
+    assert_eq!((on.region, at(&walled, &[0.0, 0.0]).nominal), (Region::Hard, vec![4.0, 0.0]));
+    // The middle of a wall is as far from it as can be.
+    assert_eq!(at(&walled, &[0.0, 0.0]).modulated, vec![4.0, 0.0]);
+    assert_eq!(at(&walled, &[2.1, 0.0]).region, Region::Hard);
+}
+
+#[test]
+fn a_moving_attractor_is_followed_and_its_rest_has_no_push() {
+    let soft = OracleObstacle::still(&[0.0, 0.0], &[1.0, 1.0]).soft(1.5);
+    let mut scene = scene(&[0.0, 1.0], vec![soft]);
+    scene.drift = Some(OracleDrift { displacement: vec![0.0, 0.2], velocity: vec![0.3, 0.0] });
+    let seen = at(&scene, &[0.0, 1.2]);
+    assert_eq!(seen.nominal, vec![0.3, 0.0]);
+    assert!(seen.obstacles[0].fade == 1.0 && seen.switches.standstill == 0.0);
+    assert_eq!(seen.adapted, seen.modulated);
 }
 
 #[test]

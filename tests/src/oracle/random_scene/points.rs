@@ -3,10 +3,11 @@
 use nalgebra::DVector;
 use rand::Rng;
 
-use super::super::evaluation::{Region, region};
+use super::super::evaluation::{Region, bodies, cloud, region};
 use super::super::obstacle::Body;
+use super::super::scan::Cloud;
 use super::super::scene::OracleScene;
-use super::random::{direction, power_of_ten, rounded_vector};
+use super::random::{chance, direction, power_of_ten, rounded_vector};
 
 /// Draws for one position before the scene is taken to have none of its kind.
 const TRIES: usize = 300;
@@ -44,26 +45,32 @@ pub struct SamplePoint {
 
 /// Up to `count` positions of a kind; fewer where the scene has none, as without soft layers.
 pub fn sample(rng: &mut impl Rng, scene: &OracleScene, kind: PointKind, count: usize) -> Vec<SamplePoint> {
-    let bodies: Result<Vec<Body>, _> =
-        scene.obstacles.iter().map(|obstacle| Body::new(obstacle, scene.dimension, scene.method)).collect();
-    let Ok(bodies) = bodies else {
+    let (Ok(bodies), Ok(cloud)) = (bodies(scene), cloud(scene)) else {
         return Vec::new();
     };
     (0..count)
-        .filter_map(|_| (0..TRIES).find_map(|_| draw(rng, scene.dimension, &bodies, kind)))
+        .filter_map(|_| (0..TRIES).find_map(|_| draw(rng, scene.dimension, &bodies, cloud.as_ref(), kind)))
         .map(|x| SamplePoint { x, kind })
         .collect()
 }
 
-fn draw(rng: &mut impl Rng, dimension: usize, bodies: &[Body], kind: PointKind) -> Option<Vec<f64>> {
-    let x = match kind {
-        PointKind::Free => DVector::from_fn(dimension, |_, _| rng.random_range(-2.0..2.0)),
-        PointKind::Far => direction(rng, dimension) * rng.random_range(20.0..900.0),
+fn draw(
+    rng: &mut impl Rng,
+    dimension: usize,
+    bodies: &[Body],
+    cloud: Option<&Cloud>,
+    kind: PointKind,
+) -> Option<Vec<f64>> {
+    let x = match (kind, cloud) {
+        (PointKind::Free, _) => DVector::from_fn(dimension, |_, _| rng.random_range(-2.0..2.0)),
+        (PointKind::Far, _) => direction(rng, dimension) * rng.random_range(20.0..900.0),
+        (PointKind::Surface | PointKind::Hard, Some(cloud)) if chance(rng, 0.25) => near_point(rng, cloud, kind),
         _ => near_obstacle(rng, bodies, kind)?,
     };
     // The position that counts is the one after rounding.
     let x = rounded_vector(&x);
-    let found = region(bodies, &DVector::from_column_slice(&x));
+    let position = DVector::from_column_slice(&x);
+    let found = region(bodies, cloud.map_or(f64::INFINITY, |cloud| cloud.least(&position)), &position);
     let fits = match kind {
         PointKind::Free | PointKind::Far => found == Region::Free,
         PointKind::Surface => found != Region::Hard,
@@ -74,30 +81,40 @@ fn draw(rng: &mut impl Rng, dimension: usize, bodies: &[Body], kind: PointKind) 
     fits.then_some(x)
 }
 
+fn near_point(rng: &mut impl Rng, cloud: &Cloud, kind: PointKind) -> DVector<f64> {
+    let point = &cloud.points[rng.random_range(0..cloud.points.len())];
+    let gamma = match kind {
+        PointKind::Hard => rng.random_range(0.05..0.98),
+        _ => 1.0 + power_of_ten(rng, -6.0, -1.0),
+    };
+    point + direction(rng, point.len()) * (cloud.radius * f64::sqrt(gamma))
+}
+
 fn near_obstacle(rng: &mut impl Rng, bodies: &[Body], kind: PointKind) -> Option<DVector<f64>> {
     if bodies.is_empty() {
         return None;
     }
     let body = &bodies[rng.random_range(0..bodies.len())];
     let ray = direction(rng, body.center.len());
-    let hard = body.gamma(&body.world(&ray)).powf(-1.0 / body.exponent);
     let reach = match kind {
-        PointKind::Surface => hard * (1.0 + power_of_ten(rng, -6.0, -1.0)).powf(1.0 / body.exponent),
-        PointKind::Hard => hard * rng.random_range(0.05..0.99),
+        PointKind::Surface => body.reach(&ray, 1.0 + power_of_ten(rng, -6.0, -1.0), false),
+        PointKind::Hard => {
+            let inward = rng.random_range(0.05..0.99);
+            body.reach(&ray, 1.0, false) * if body.wall { 1.2 - 0.2 * inward } else { inward }
+        }
         _ => {
             let (hard, soft) = layer_reach(body, &ray)?;
-            rng.random_range(hard..soft)
+            hard + rng.random_range(0.0..1.0) * (soft - hard)
         }
     };
     Some(on_ray(body, &ray, reach))
 }
 
-/// Where a ray from the centre, given in the obstacle's frame, enters and leaves the soft layer.
+/// Where a ray from the centre, given in the obstacle's frame, crosses the hard and the soft surface, if there is a layer.
 pub(super) fn layer_reach(body: &Body, ray: &DVector<f64>) -> Option<(f64, f64)> {
-    let unit_point = body.world(ray);
-    let hard = body.gamma(&unit_point).powf(-1.0 / body.exponent);
-    let soft = body.gamma_soft(&unit_point).powf(-1.0 / body.exponent);
-    (soft > hard * (1.0 + 1e-6)).then_some((hard, soft))
+    let (hard, soft) = (body.reach(ray, 1.0, false), body.reach(ray, 1.0, true));
+    let (inner, outer) = if body.wall { (soft, hard) } else { (hard, soft) };
+    (outer > inner * (1.0 + 1e-6)).then_some((hard, soft))
 }
 
 /// The point at a distance from the centre on a ray of the obstacle's frame.

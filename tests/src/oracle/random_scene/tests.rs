@@ -2,8 +2,9 @@ use std::collections::HashMap;
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
+use super::super::cluster::clusters;
 use super::super::evaluation::{Region, evaluate};
-use super::super::scene::{OracleMotion, OracleSpin};
+use super::super::scene::{OracleMotion, OracleShape, OracleSpin};
 use super::*;
 
 #[test]
@@ -21,6 +22,8 @@ fn every_kind_is_frequent() {
     let (mut moving, mut fixed, mut original, mut lpv) = (0, 0, 0, 0);
     let mut counts = [0; 11];
     let mut curvatures = [0; 4];
+    let mut shapes = [0; 5];
+    let (mut walls, mut scans, mut drifting, mut growing, mut ageing, mut clustered) = (0, 0, 0, 0, 0, 0);
     for seed in 0..scenes {
         let random = generate(seed, 2);
         for point in &random.points {
@@ -33,8 +36,24 @@ fn every_kind_is_frequent() {
         original += usize::from(scene.method == OracleMethod::Original);
         lpv += usize::from(matches!(scene.motion, OracleMotion::Lpv { .. }));
         counts[scene.obstacles.len()] += 1;
+        walls += usize::from(scene.obstacles.iter().any(|o| o.wall));
+        scans += usize::from(scene.scan.is_some());
+        drifting += usize::from(scene.drift.is_some());
+        growing += usize::from(scene.obstacles.iter().any(|o| o.grown != 0.0));
+        ageing += usize::from(scene.obstacles.iter().any(|o| o.aged != 0.0));
+        clustered += usize::from(clusters(scene).unwrap().is_some_and(|all| !all.is_empty()));
         for obstacle in &scene.obstacles {
-            curvatures[usize::from(obstacle.curvature)] += 1;
+            let kind = match &obstacle.shape {
+                OracleShape::Ellipsoid { curvature, .. } => {
+                    curvatures[usize::from(*curvature)] += 1;
+                    0
+                }
+                OracleShape::Box { .. } => 1,
+                OracleShape::Cylinder { .. } => 2,
+                OracleShape::Capsule { .. } => 3,
+                OracleShape::Polygon { .. } => 4,
+            };
+            shapes[kind] += 1;
         }
     }
     let scenes = scenes as usize;
@@ -46,9 +65,15 @@ fn every_kind_is_frequent() {
     for (what, count) in [("moving", moving), ("fixed", fixed), ("lpv", lpv)] {
         assert!(count * 4 > scenes && count * 4 < 3 * scenes, "{what} {count}");
     }
-    assert!(original * 20 > scenes);
+    let rarer =
+        [("walls", walls), ("scans", scans), ("drifting", drifting), ("growing", growing), ("clustered", clustered)];
+    for (what, count) in rarer {
+        assert!(count * 8 > scenes && count * 2 < scenes, "{what} {count}");
+    }
+    assert!(original * 20 > scenes && ageing * 12 > scenes);
+    assert!(shapes.iter().all(|n| *n > 100), "{shapes:?}");
     assert!(counts[0] == 0 && counts[1..].iter().all(|n| *n > 10), "{counts:?}");
-    assert!(curvatures[0] == 0 && curvatures[1..].iter().all(|n| *n > 300), "{curvatures:?}");
+    assert!(curvatures[0] == 0 && curvatures[1..].iter().all(|n| *n > 150), "{curvatures:?}");
 }
 
 #[test]
@@ -74,11 +99,30 @@ fn reference_points_are_well_inside() {
     for seed in 0..60 {
         let scene = generate(seed, 0).scene;
         for obstacle in &scene.obstacles {
-            let gamma: f64 = obstacle.reference.iter().zip(&obstacle.axes).map(|(r, a)| (r / a).powi(2)).sum();
+            let extents = obstacle.shape.semi_extents();
+            let gamma: f64 = obstacle.reference.iter().zip(&extents).map(|(r, e)| (r / e).powi(2)).sum();
             assert!(gamma < 0.4 && gamma > 0.0);
             assert!(matches!(obstacle.spin, OracleSpin::Planar(_)) || scene.dimension == 3);
         }
     }
+}
+
+#[test]
+fn what_has_grown_and_aged_has_done_so_since_its_age() {
+    let mut old = 0;
+    for seed in 0..200 {
+        let random = generate(seed, 0);
+        let RandomAgeing { time_to_live, rate, ages } = &random.ageing;
+        assert_eq!(ages.len(), random.scene.obstacles.len());
+        for (obstacle, age) in random.scene.obstacles.iter().zip(ages) {
+            assert_eq!(obstacle.grown, obstacle.growth * age);
+            assert_eq!(obstacle.aged, rate * (age - time_to_live).max(0.0));
+            assert_eq!(obstacle.ageing, if age > time_to_live { *rate } else { 0.0 });
+            assert!(*age == 0.0 || obstacle.spin == OracleSpin::Planar(0.0));
+            old += usize::from(*age > *time_to_live);
+        }
+    }
+    assert!(old > 50);
 }
 
 #[test]

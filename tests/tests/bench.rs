@@ -1,0 +1,35 @@
+//! Commands of the boards have the bits of this machine's, over every shape, motion and kind of scene; and the bench says what it measured.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
+
+use pliant_tests::programs;
+
+/// Ticks whose bits are compared, on each board.
+const BITS: u64 = 30_000;
+
+#[test]
+fn boards_compute_the_same_bits_and_count_instructions() {
+    let folder = std::env::temp_dir();
+    let bits = BITS.to_string();
+    let arguments = ["bench", "--device", "qemu", "--ticks", "50", "--bits", &bits, "--json"];
+    let ended = programs::run(&folder, arguments).unwrap();
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let report = ended.json();
+    let compared = report["bits"].as_array().unwrap();
+    assert_eq!(compared.len(), 2, "{report}");
+    for bits in compared {
+        assert_eq!(bits["ticks"], BITS);
+        assert_eq!(bits["board"], bits["host"]);
+    }
+    // Every case that is asked for is there, and more obstacles take longer.
+    let ticks = report["ticks"].as_array().unwrap();
+    let typical = |core: &str, dimension: u64, obstacles: u64| {
+        let case =
+            |t: &&serde_json::Value| t["core"] == core && t["dimension"] == dimension && t["obstacles"] == obstacles;
+        ticks.iter().find(case).unwrap()["instructions_per_tick"].as_u64().unwrap()
+    };
+    let planar = [0, 8, 16, 64].map(|n| typical("Cortex-M4F", 2, n));
+    assert!(planar.is_sorted() && planar[0] > 500, "{planar:?}");
+    assert!(typical("Cortex-M4F", 3, 0) < typical("Cortex-M4F", 3, 16));
+    assert!(typical("Cortex-M0", 2, 0) < typical("Cortex-M0", 2, 8));
+    assert!(ticks.iter().all(|t| t["worst"].as_u64() >= t["instructions_per_tick"].as_u64()));
+}
