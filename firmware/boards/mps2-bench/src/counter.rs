@@ -51,7 +51,8 @@ pub fn wanted() -> Wanted {
     let mut text = [0_u8; 256];
     let mut field = [text.as_mut_ptr().expose_provenance(), text.len()];
     // SAFETY: the call takes the address of two words, those of a buffer and its length, and writes no further. Both live until it is back.
-    let status = unsafe { cortex_m_semihosting::syscall(GET_COMMAND_LINE, &field) };
+    #[allow(clippy::unnecessary_mut_passed, reason = "the host writes the length into it")]
+    let status = unsafe { cortex_m_semihosting::syscall(GET_COMMAND_LINE, &mut field) };
     let length = if status == 0 { field[1].min(text.len()) } else { 0 };
     let words = text.get(..length).and_then(|text| core::str::from_utf8(text).ok());
     Wanted::parse(words.unwrap_or_default())
