@@ -96,7 +96,8 @@ impl<S: Scalar, const D: usize> ObstacleSpec<S, D> {
         check(rotation::is_rotation(&self.rotation), ObstacleError::Rotation)?;
         self.shape.check()?;
         // A factor an axis would uncover parts of a polygon.
-        let one = |v: &Vector<S, D>| !matches!(self.shape, Shape::Polygon(_)) || v.iter().all(|x| *x == v[0]);
+        let near = |x: S, y: S| (x - y).abs() <= S::from_f64(1e-4) * y;
+        let one = |v: &Vector<S, D>| !matches!(self.shape, Shape::Polygon(_)) || v.iter().all(|x| near(*x, v[0]));
         check(ratio(&self.soft_ratio) && one(&self.soft_ratio), ObstacleError::SoftRatio)?;
         check(ratio(&self.margin) && one(&self.margin), ObstacleError::Margin)?;
         check(self.velocity.iter().all(|v| v.abs() <= max_speed), ObstacleError::Velocity)?;

@@ -54,7 +54,11 @@ prop_compose! {
         // Only of an ellipsoid is it known what is inside, and one that shrinks might lose it.
         let reference = if shape.is_some() || growth < 0.0 { [0.0; 3] } else { point };
         let wall = wall && shape.is_some() && thin > 0.01;
+        // A factor an axis would uncover parts of a polygon.
+        let polygonal = (kind, spatial) == (4, false);
+        let margin = if polygonal { [margin[0]; 3] } else { margin };
         let softness = match shape {
+            Some(_) if polygonal => format!("stiffness = 1.3\nwall = {wall}"),
             Some(_) => format!("layer = {:?}\nwall = {wall}", thin * 0.3),
             None => format!("{softness}\ncurvature = {curvature}"),
         };
