@@ -43,13 +43,17 @@ pub fn spatial_spin<S: Scalar>(w: &Vector<S, 3>) -> Matrix<S, 3> {
 
 /// The rotation after `dt` seconds at the angular velocity `spin`.
 ///
-/// Cayley's map I + 2 (a + a^2)/(1 + |a|^2) with a = spin dt/2 is a rotation in 2 and 3 dimensions and needs no sine; its angle is
-/// 2 atan(|a|), short of the true one by 2e-9 rad for 5 rad/s and 1 ms. One step of Newton's iteration takes out what rounding
-/// would add up to.
+/// Cayley's map I + 2 (a + a^2)/(1 + |a|^2) is a rotation by 2 atan(|a|) in 2 and 3 dimensions and needs no sine. With h = spin dt/2 and
+/// a = h (1 + |h|^2/3 + 2|h|^4/15), the tangent's series, its angle is short of the true one by 1e-18 rad for 5 rad/s and 1 ms: what is
+/// carried on for long is where the next sight finds it. One step of Newton's iteration takes out what rounding would add up to.
 pub fn turned<S: Scalar, const D: usize>(rotation: &Matrix<S, D>, spin: &Matrix<S, D>, dt: S) -> Matrix<S, D> {
     let half = S::from_f64(0.5);
-    let a = spin * (dt * half);
-    let squared = a.iter().fold(S::zero(), |s, x| s + *x * *x) * half;
+    let h = spin * (dt * half);
+    // Every entry of a skew matrix is in there twice.
+    let length_squared = |a: &Matrix<S, D>| a.iter().fold(S::zero(), |s, x| s + *x * *x) * half;
+    let squared = length_squared(&h);
+    let a = h * (S::one() + squared * (S::from_f64(1.0 / 3.0) + squared * S::from_f64(2.0 / 15.0)));
+    let squared = length_squared(&a);
     let scale = S::from_f64(2.0) / (S::one() + squared);
     let q = rotation + (a + a * a) * rotation * scale;
     q * (Matrix::<S, D>::identity() * S::from_f64(3.0) - q.transpose() * q) * half
@@ -87,7 +91,7 @@ mod tests {
             q = turned(&q, &spin, 0.001);
         }
         let expected = planar(5.0_f64);
-        assert!((q[(0, 0)] - expected[(0, 0)]).abs() < 2e-5 && (q[(1, 0)] - expected[(1, 0)]).abs() < 2e-5);
+        assert!((q[(0, 0)] - expected[(0, 0)]).abs() < 1e-12 && (q[(1, 0)] - expected[(1, 0)]).abs() < 1e-12);
         assert!(is_rotation(&q));
     }
 
