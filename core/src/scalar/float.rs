@@ -2,7 +2,6 @@
 
 use super::Scalar;
 use super::angle::{ArcTangent, SineCosine};
-use super::square_root;
 use core::f32::consts as single;
 use core::f64::consts as double;
 
@@ -72,14 +71,14 @@ const CIRCLE_F64: SineCosine<f64, 6> = SineCosine {
     ],
 };
 
-/// sqrt(1 + u) for 0 <= u <= tan(pi/8)^2, with an error of 6e-9: a fifth of what a square root costs a core that has none in `libm`.
-#[inline(always)]
-fn root(u: f32) -> f32 {
-    1.0 + u * (0.499_998_84 + u * (-0.124_932_02 + u * (0.061_248_12 + u * -0.029_694_578)))
-}
+/// `libm` has the instruction where there is vector arithmetic.
+#[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
+use libm::sqrtf;
+#[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
+use pliant_fpu::sqrt as sqrtf;
 
 macro_rules! scalar {
-    ($float:ty, $angle:ident, $root:expr, $circle:ident, $($method:ident = $function:path),+) => {
+    ($float:ty, $angle:ident, $circle:ident, $($method:ident = $function:path),+) => {
         impl Scalar for $float {
             const EPSILON: Self = <$float>::EPSILON;
             const MAX: Self = <$float>::MAX;
@@ -108,7 +107,7 @@ macro_rules! scalar {
             }
             #[inline(always)]
             fn polar(x: Self, y: Self) -> (Self, Self) {
-                $angle.polar(y, x, $root)
+                $angle.polar(y, x, |u| Scalar::sqrt(1.0 + u))
             }
             #[inline(always)]
             fn rounding(size: Self) -> Self {
@@ -131,6 +130,6 @@ macro_rules! scalar {
     };
 }
 #[rustfmt::skip]
-scalar!(f32, ATAN_F32, root, CIRCLE_F32, abs = libm::fabsf, sqrt = square_root::nearest, exp = libm::expf, sin = libm::sinf, cos = libm::cosf);
+scalar!(f32, ATAN_F32, CIRCLE_F32, abs = libm::fabsf, sqrt = sqrtf, exp = libm::expf, sin = libm::sinf, cos = libm::cosf);
 #[rustfmt::skip]
-scalar!(f64, ATAN_F64, |u| Scalar::sqrt(1.0 + u), CIRCLE_F64, abs = libm::fabs, sqrt = libm::sqrt, exp = libm::exp, sin = libm::sin, cos = libm::cos);
+scalar!(f64, ATAN_F64, CIRCLE_F64, abs = libm::fabs, sqrt = libm::sqrt, exp = libm::exp, sin = libm::sin, cos = libm::cos);

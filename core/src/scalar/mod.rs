@@ -7,7 +7,6 @@ mod angle;
 mod fixed;
 mod float;
 mod integer;
-mod square_root;
 mod transcendental;
 
 pub use self::fixed::Fixed;
