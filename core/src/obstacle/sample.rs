@@ -20,7 +20,7 @@ pub(crate) struct Sample<S: Scalar, const D: usize> {
 #[derive(Clone, Debug)]
 pub(crate) struct SoftLayer<S: Scalar, const D: usize> {
     pub gamma_soft: S,
-    /// n, the unit normal.
+    /// n, the unit normal; of a wall inwards.
     pub normal: Vector<S, D>,
     /// r, from the reference point to x, m.
     pub arm: Vector<S, D>,
@@ -62,9 +62,10 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         arm: Vector<S, D>,
     ) -> Option<SoftLayer<S, D>> {
         let gamma_soft = self.gamma_soft(x);
+        let normal = unit(&outward);
         (gamma_soft <= S::one()).then(|| SoftLayer {
             gamma_soft,
-            normal: unit(&outward),
+            normal: if self.spec.wall { -normal } else { normal },
             arm,
             first_axis: self.spec.rotation.column(0).into_owned(),
         })

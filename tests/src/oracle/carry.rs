@@ -27,7 +27,7 @@ pub fn carried(scene: &OracleScene, dt: f64) -> Result<OracleScene, OracleError>
 /// The rotation after a turn in the world's frame.
 fn turned(rotation: OracleRotation, spin: OracleSpin, dt: f64) -> Result<OracleRotation, OracleError> {
     Ok(match (rotation, spin) {
-        (OracleRotation::Angle(angle), OracleSpin::Planar(rate)) => OracleRotation::Angle(angle + cayley(rate * dt)),
+        (OracleRotation::Angle(angle), OracleSpin::Planar(rate)) => OracleRotation::Angle(angle + rate * dt),
         (OracleRotation::Angle(angle), OracleSpin::Spatial(_)) => {
             let half = 0.5 * angle;
             turned(OracleRotation::Quaternion([half.cos(), 0.0, 0.0, half.sin()]), spin, dt)?
@@ -40,7 +40,7 @@ fn turned(rotation: OracleRotation, spin: OracleSpin, dt: f64) -> Result<OracleR
             let Some(axis) = unit(&rate) else {
                 return Ok(rotation);
             };
-            let (sin, cos) = (0.5 * cayley(length(&rate))).sin_cos();
+            let (sin, cos) = (0.5 * length(&rate)).sin_cos();
             let own = unit(&DVector::from_column_slice(&own)).ok_or(OracleError::Value("rotation"))?;
             OracleRotation::Quaternion(product(
                 [cos, axis[0] * sin, axis[1] * sin, axis[2] * sin],
@@ -48,11 +48,6 @@ fn turned(rotation: OracleRotation, spin: OracleSpin, dt: f64) -> Result<OracleR
             ))
         }
     })
-}
-
-/// The angle that a turn by w dt is carried on by.
-fn cayley(angle: f64) -> f64 {
-    2.0 * (0.5 * angle).atan()
 }
 
 /// The rotation b, then a.
@@ -96,9 +91,8 @@ mod tests {
 
     #[test]
     fn a_quarter_turn_about_the_worlds_axis() {
-        // 2 atan(1), by Cayley's map of w dt = 2.
         let start = OracleRotation::Quaternion([0.5, 0.5, 0.5, 0.5]);
-        let turned = turned(start, OracleSpin::Spatial([0.0, 0.0, 4.0]), 0.5).unwrap();
+        let turned = turned(start, OracleSpin::Spatial([0.0, 0.0, std::f64::consts::PI]), 0.5).unwrap();
         let expected = rotation_matrix(OracleRotation::Angle(std::f64::consts::FRAC_PI_2), 3).unwrap()
             * rotation_matrix(start, 3).unwrap();
         assert!((rotation_matrix(turned, 3).unwrap() - expected).amax() < 1e-15);
