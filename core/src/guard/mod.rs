@@ -26,6 +26,10 @@ use crate::{Scalar, Vector};
 /// Most half-spaces of one tick; beyond it those that bind the least are left out.
 const CAPACITY: usize = 192;
 
+/// The least skin, m: 2^-16, what fixed point needs within a metre. The same for all numbers, so that in a wedge between two surfaces, where
+/// some micrometres of room decide how fast it goes on, they agree.
+const SKIN: f64 = 1.0 / 65536.0;
+
 /// The share of the skin that one sample makes up for in its outer half: more than rounding takes, and no more of a push than that.
 const HOLD: f64 = 0.06;
 
@@ -103,8 +107,8 @@ fn add<S: Scalar, const D: usize>(all: &mut HalfSpaces<S, D>, new: HalfSpace<S, 
     }
 }
 
-/// What rounding may do to a distance between two points of this size, m: a surface is kept this far away.
+/// A surface is kept this far away, m: what rounding may do to a distance between two points of this size, and no less than [`SKIN`].
 fn skin<S: Scalar, const D: usize>(x: &Vector<S, D>) -> S {
     let largest = x.iter().fold(S::one(), |m, x| m.max(x.abs()));
-    S::EPSILON * S::from_f64(16.0) * largest
+    (S::EPSILON * S::from_f64(16.0) * largest).max(S::from_f64(SKIN))
 }

@@ -14,7 +14,9 @@ use super::shape::{Inner, Shape, away, turned_right};
 pub(super) use nearest::{Bound, least_violation, nearest};
 
 /// Units of rounding, at the size of the position, that a gap is reduced by.
-const SKIN: f64 = 16.0;
+const ROUNDING: f64 = 16.0;
+/// Nor less than this, m.
+const SKIN: f64 = 0.0000152587890625;
 
 /// A half-space of displacements: n.delta >= -gap.
 #[derive(Debug, Clone, PartialEq)]
@@ -206,7 +208,7 @@ fn bounds(spaces: &HalfSpaces, x: &[f64], alpha: f64, dt: f64) -> Vec<Bound> {
         .all
         .iter()
         .map(|space| {
-            let gap = space.gap - SKIN * f64::EPSILON * size;
+            let gap = space.gap - SKIN.max(ROUNDING * f64::EPSILON * size);
             let least = if gap > 0.0 { -alpha * gap / dt } else { -gap / dt };
             Bound { normal: DVector::from_column_slice(&space.normal), least }
         })
