@@ -250,8 +250,11 @@ impl<S: Scalar, const D: usize> DirectionalMean<S, D> {
                 seen.aside[i] = S::norm(&across);
             }
         }
-        for i in 0..LANES {
-            (seen.speed[i], seen.angle[i]) = S::polar(seen.ahead[i], seen.aside[i]);
+        // One by itself may not need it.
+        if LANES > 1 {
+            for i in 0..LANES {
+                (seen.speed[i], seen.angle[i]) = S::polar(seen.ahead[i], seen.aside[i]);
+            }
         }
         seen
     }
@@ -268,24 +271,28 @@ impl<S: Scalar, const D: usize> DirectionalMean<S, D> {
             self.kappa *= factor;
             self.plain *= factor;
         }
+        let (ahead, aside) = (seen.ahead[i], seen.aside[i]);
+        if ahead < S::zero() {
+            self.fading = self.fading.max(opposite(ahead, aside));
+        }
         let weight = weight(distance, self.nearest);
+        // On a surface most have none.
+        if !(weight > S::zero()) {
+            return;
+        }
+        let (speed, angle) = if LANES == 1 { S::polar(ahead, aside) } else { (seen.speed[i], seen.angle[i]) };
         self.sum += weight;
-        self.speed += weight * seen.speed[i];
+        self.speed += weight * speed;
         for d in 0..D {
             self.plain[d] += seen.velocity[d][i] * weight;
         }
-        let aside = seen.aside[i];
         if D == 2 {
-            self.kappa[0] += weight * seen.angle[i];
+            self.kappa[0] += weight * angle;
         } else if aside > S::zero() {
-            let share = weight * (seen.angle[i] / aside);
+            let share = weight * (angle / aside);
             for d in 0..D {
                 self.kappa[d] += seen.across[d][i] * share;
             }
-        }
-        let ahead = seen.ahead[i];
-        if ahead < S::zero() {
-            self.fading = self.fading.max(opposite(ahead, aside));
         }
     }
 
