@@ -33,7 +33,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     #[inline(always)]
     pub(crate) fn sample(&self, x: &Vector<S, D>) -> Sample<S, D> {
         let q = self.local(x);
-        let (gamma, direction) = self.body.level(&self.spec.shape, &q.component_mul(&self.hard));
+        let (gamma, direction) = self.level(&q.component_mul(&self.hard));
         let shape_normal = self.spec.rotation * direction.component_mul(&self.hard);
         let mut surface_velocity = Vector::zeros();
         if self.moves {
@@ -43,29 +43,23 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             }
         }
         let arm = x - self.spec.center - self.offset;
-        Sample { gamma: self.turned_out(gamma), outward: shape_normal, arm, surface_velocity }
+        Sample { gamma, outward: shape_normal, arm, surface_velocity }
     }
 
-    /// May a point with this Gamma be in the soft layer?
+    /// May a point with this Gamma be in the soft layer, or in the core?
     #[inline(always)]
     pub(crate) fn may_be_soft(&self, gamma: S) -> bool {
-        // The usual answer first.
-        gamma <= self.soft_until && gamma > S::one()
+        gamma <= self.soft_until
     }
 
     /// The soft layer at x, if x is in it and not in the core, from what was sampled there.
     #[inline(never)]
-    pub(crate) fn soft_layer(
-        &self,
-        x: &Vector<S, D>,
-        outward: Vector<S, D>,
-        arm: Vector<S, D>,
-    ) -> Option<SoftLayer<S, D>> {
+    pub(crate) fn soft_layer(&self, x: &Vector<S, D>, sample: Sample<S, D>) -> Option<SoftLayer<S, D>> {
         let gamma_soft = self.gamma_soft(x);
-        (gamma_soft <= S::one()).then(|| SoftLayer {
+        (sample.gamma > S::one() && gamma_soft <= S::one()).then(|| SoftLayer {
             gamma_soft,
-            normal: unit(&outward),
-            arm,
+            normal: unit(&sample.outward),
+            arm: sample.arm,
             first_axis: self.spec.rotation.column(0).into_owned(),
         })
     }
