@@ -76,12 +76,12 @@ pub fn nearest<S: Scalar, const D: usize>(
     }
     let half_spaces = with_sides(half_spaces);
     let margin = tolerance * S::from_f64(4.0);
-    let exact = Programme::nearest(goal, speed, S::zero(), tolerance);
-    let velocity = match exact.solve(half_spaces) {
-        Some(velocity) if worst(half_spaces, &velocity) <= margin => velocity,
-        _ => least_violation(goal, start, half_spaces, speed),
-    };
-    let violation = worst(half_spaces, &velocity);
+    let exact = Programme::nearest(goal, speed, S::zero(), tolerance).solve(half_spaces);
+    let checked = exact.map(|velocity| (velocity, worst(half_spaces, &velocity)));
+    let (velocity, violation) = checked.filter(|(_, violation)| *violation <= margin).unwrap_or_else(|| {
+        let velocity = least_violation(goal, start, half_spaces, speed);
+        (velocity, worst(half_spaces, &velocity))
+    });
     let feasible = violation <= margin;
     let violation = if feasible { S::zero() } else { violation };
     Solution { velocity, changed: velocity != *wanted, violation, feasible }

@@ -173,6 +173,9 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         reach: S,
         mut keep: impl FnMut(Vector<S, D>, S),
     ) {
+        if self.plain {
+            return self.keep_out_of_ellipsoid(x, keep);
+        }
         let u = self.local(x).component_mul(&self.hard);
         let wish = self.spec.rotation.tr_mul(wish).component_mul(&self.hard);
         let place = Place { u, wish, inverse: &self.hard, wall: self.spec.wall, step, reach };
@@ -183,6 +186,23 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
                 keep(self.spec.rotation * (normal * inverse), slack * inverse);
             }
         });
+    }
+
+    /// The same for an ellipsoid with p = 1: the half-space where the ray from the centre leaves the surface, as for other superellipsoids.
+    fn keep_out_of_ellipsoid(&self, x: &Vector<S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
+        let one = S::one();
+        let u = self.local(x).component_mul(&self.hard);
+        let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
+        if !(largest > S::zero()) {
+            return keep(self.spec.rotation.column(0).into_owned(), -one / self.hard[0]);
+        }
+        // Scaled, so that squares stay within range; only the direction counts.
+        let t = u / largest;
+        let size = norm(&t);
+        let shortest = one / self.slimmest;
+        let normal = t.zip_map(&self.hard, |t, inverse| t * (inverse * shortest));
+        let inverse = one / norm(&normal);
+        keep(self.spec.rotation * (normal * inverse), size * (largest * size - one) * shortest * inverse);
     }
 
     /// May the hard surface be within `reach` (m) of a point with this Gamma?
