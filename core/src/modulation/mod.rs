@@ -291,11 +291,11 @@ impl<S: Scalar, const D: usize> DirectionalMean<S, D> {
         if ahead < S::zero() {
             self.fading = self.fading.max(opposite(ahead, aside));
         }
-        let weight = weight(distance, self.nearest);
-        // On a surface most have none.
-        if !(weight > S::zero()) {
+        // On a surface it alone counts.
+        if !(self.nearest > S::zero()) && distance > S::zero() {
             return;
         }
+        let weight = weight(distance, self.nearest);
         let (speed, angle) = if LANES == 1 { S::polar(ahead, aside) } else { (seen.speed[i], seen.angle[i]) };
         self.sum += weight;
         self.speed += weight * speed;

@@ -9,7 +9,7 @@ type Pair<S> = (S, S);
 
 /// sum_i c_i u^i
 #[inline(always)]
-fn polynomial<S: Scalar, const N: usize>(c: &[S; N], u: S) -> S {
+pub(super) fn polynomial<S: Scalar, const N: usize>(c: &[S; N], u: S) -> S {
     c.iter().rev().copied().reduce(|sum, c| sum * u + c).unwrap_or_else(S::zero)
 }
 
