@@ -148,18 +148,18 @@ fn fade<S: Scalar, const D: usize>(o: &SoftLayer<S, D>) -> S {
 
 /// The direction of the flow in the tangent plane, shorter than one where there is hardly any.
 fn along_flow<S: Scalar, const D: usize>(u: &Vector<S, D>, nominal: S, o: &SoftLayer<S, D>) -> Vector<S, D> {
-    let t = u - o.normal * u.dot(&o.normal) + side(&o.normal) * (S::from_f64(SIDE) * nominal);
+    let t = u - o.normal * u.dot(&o.normal) + side(o) * (S::from_f64(SIDE) * nominal);
     t / norm(&t).max(S::from_f64(FULL) * nominal)
 }
 
-/// A fixed tangent: the normal turned by +90 degrees in 2-D; in 3-D a x n for an axis along which robots seldom approach.
-fn side<S: Scalar, const D: usize>(n: &Vector<S, D>) -> Vector<S, D> {
+/// A fixed tangent: the normal turned by +90 degrees in 2-D; in 3-D a x n for an axis a that turns with the obstacle.
+fn side<S: Scalar, const D: usize>(o: &SoftLayer<S, D>) -> Vector<S, D> {
+    let (a, n) = (&o.leaning, &o.normal);
     let mut t = Vector::<S, D>::zeros();
     if D == 2 {
         (t[0], t[1]) = (-n[1], n[0]);
     } else {
-        let (one, two) = (S::from_f64(1.0 / 3.0), S::from_f64(2.0 / 3.0));
-        (t[0], t[1], t[2]) = (two * n[2] - two * n[1], two * n[0] - one * n[2], one * n[1] - two * n[0]);
+        (t[0], t[1], t[2]) = (a[1] * n[2] - a[2] * n[1], a[2] * n[0] - a[0] * n[2], a[0] * n[1] - a[1] * n[0]);
     }
     t
 }

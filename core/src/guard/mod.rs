@@ -79,7 +79,11 @@ impl<S: Scalar> Guard<S> {
             } else {
                 S::one()
             };
-            add(&mut all, HalfSpace { normal, offset: -(room * share * rate) });
+            let offset = -(room * share * rate);
+            // What no velocity can violate need not be looked at.
+            if offset > -speed {
+                add(&mut all, HalfSpace { normal, offset });
+            }
         };
         for (index, reach) in &around.near {
             if let Some(obstacle) = table.at(*index) {

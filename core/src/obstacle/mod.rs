@@ -44,6 +44,8 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     soft_until: S,
     /// From the centre to the reference point, in the world's frame, m: as long as nothing turns it stays.
     offset: Vector<S, D>,
+    /// Is it an ellipsoid with p = 1, and no wall? The usual case goes a short way.
+    plain: bool,
     /// Does it move, turn or grow? Does it turn?
     moves: bool,
     spins: bool,
@@ -85,6 +87,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             soft: nothing,
             soft_until: S::one(),
             offset: nothing,
+            plain: !spec.wall && body.is_ellipsoid(),
             moves: false,
             spins: false,
             swelling: S::zero(),
@@ -111,12 +114,12 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// Gamma(x), dimensionless, with safety factors, growth and ageing; the largest number there is at the centre of a wall.
     pub fn gamma(&self, x: &Vector<S, D>) -> S {
-        self.turned_out(self.body.level(&self.spec.shape, &self.local(x).component_mul(&self.hard)).0)
+        self.level(&self.local(x).component_mul(&self.hard)).0
     }
 
     /// Gamma_k(x), dimensionless.
     pub fn gamma_soft(&self, x: &Vector<S, D>) -> S {
-        self.turned_out(self.body.level(&self.spec.shape, &self.local(x).component_mul(&self.soft)).0)
+        self.level(&self.local(x).component_mul(&self.soft)).0
     }
 
     /// dGamma/dx, 1/m. Near a polygon's corners, where Gamma has a kink, the blend of both sides that the method uses.
@@ -170,6 +173,9 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         reach: S,
         mut keep: impl FnMut(Vector<S, D>, S),
     ) {
+        if self.plain {
+            return self.keep_out_of_ellipsoid(x, keep);
+        }
         let u = self.local(x).component_mul(&self.hard);
         let wish = self.spec.rotation.tr_mul(wish).component_mul(&self.hard);
         let place = Place { u, wish, inverse: &self.hard, wall: self.spec.wall, step, reach };
@@ -182,15 +188,39 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         });
     }
 
-    /// May the hard surface be within `reach` (m) of a point with this Gamma?
-    pub(crate) fn is_near(&self, gamma: S, reach: S) -> bool {
+    /// The same for an ellipsoid with p = 1: the half-space where the ray from the centre leaves the surface, as for other superellipsoids.
+    fn keep_out_of_ellipsoid(&self, x: &Vector<S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
         let one = S::one();
-        let change = reach * self.slimmest;
-        // Most are far: 1.08^16 and 0.92^-16 are below 4, and p no more than 8.
-        if gamma > S::from_f64(4.0) && change < S::from_f64(0.08) {
-            return false;
+        let u = self.local(x).component_mul(&self.hard);
+        let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
+        if !(largest > S::zero()) {
+            return keep(self.spec.rotation.column(0).into_owned(), -one / self.hard[0]);
         }
+        // Scaled, so that squares stay within range; only the direction counts.
+        let t = u / largest;
+        let size = norm(&t);
+        let shortest = one / self.slimmest;
+        let normal = t.zip_map(&self.hard, |t, inverse| t * (inverse * shortest));
+        let inverse = one / norm(&normal);
+        keep(self.spec.rotation * (normal * inverse), size * (largest * size - one) * shortest * inverse);
+    }
+
+    /// May the hard surface be within `reach` (m) of a point with this Gamma?
+    #[inline(always)]
+    pub(crate) fn is_near(&self, gamma: S, reach: S) -> bool {
         // The gauge is gamma^(1/2p) and changes by no more than `slimmest` a metre.
+        let change = reach * self.slimmest;
+        if self.plain {
+            let gauge = S::one() + change;
+            return gamma <= gauge * gauge;
+        }
+        self.is_within(gamma, change)
+    }
+
+    /// May the gauge be 1 where it differs by `change`, at most, from that of a point with this Gamma?
+    #[inline(never)]
+    fn is_within(&self, gamma: S, change: S) -> bool {
+        let one = S::one();
         if self.spec.wall {
             let gauge = (one - change).max(S::zero());
             gamma * (gauge * gauge).powi(self.body.power()) <= one
@@ -217,15 +247,28 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.spec.rotation.tr_mul(&(x - self.spec.center))
     }
 
-    /// gamma, or 1/gamma for a wall.
-    fn turned_out(&self, gamma: S) -> S {
-        if !self.spec.wall {
+    /// Gamma at these scaled coordinates, and the direction of gamma's gradient.
+    #[inline(always)]
+    fn level(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
+        if self.plain {
+            return (S::dot(u.as_slice(), u.as_slice()), *u);
+        }
+        // Taken apart, so that the result above need not pass through the memory of this one.
+        let (gamma, direction) = self.level_of_others(*u);
+        (gamma, Vector::from_fn(|i, _| direction[i]))
+    }
+
+    #[inline(never)]
+    fn level_of_others(&self, u: Vector<S, D>) -> (S, Vector<S, D>) {
+        let (gamma, direction) = self.body.level(&self.spec.shape, &u);
+        let gamma = if !self.spec.wall {
             gamma
         } else if gamma > S::one() / S::FAR {
             S::one() / gamma
         } else {
             S::MAX
-        }
+        };
+        (gamma, direction)
     }
 
     fn on_surface(&self, direction: &Vector<S, D>, inverse: &Vector<S, D>) -> Vector<S, D> {

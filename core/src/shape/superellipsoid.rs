@@ -11,6 +11,9 @@ pub(crate) struct Superellipsoid {
 
 impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
     fn level(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
+        if self.p == 1 {
+            return (S::dot(u.as_slice(), u.as_slice()), *u);
+        }
         let gamma = u.iter().fold(S::zero(), |sum, u| sum + (*u * *u).powi(self.p));
         // |u|^(2p - 1) overflows far away and underflows near the centre; its direction is that of u / max|u|.
         let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));

@@ -203,9 +203,10 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             if !(sample.gamma < S::FAR) {
                 continue;
             }
-            if deformable
-                && entry.obstacle.may_be_soft(sample.gamma)
-                && let Some(layer) = entry.obstacle.soft_layer(x, sample.outward, sample.arm)
+            // The usual answer first.
+            if entry.obstacle.may_be_soft(sample.gamma)
+                && deformable
+                && let Some(layer) = entry.obstacle.soft_layer(x, sample.clone())
             {
                 // Cannot be full: it has the table's own capacity.
                 let _ = around.soft.push(layer);
