@@ -69,6 +69,20 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     ageing: S,
 }
 
+/// From where half-spaces are to be found that keep a point out, and where that point may go.
+pub(crate) struct Outlook<'a, S: Scalar, const D: usize> {
+    /// m
+    pub at: &'a Vector<S, D>,
+    /// The displacement that is wished for, m: where there is a choice of half-spaces, one that leaves room for it.
+    pub wish: &'a Vector<S, D>,
+    /// No displacement is longer, m.
+    pub step: S,
+    /// Surfaces farther away may be left out, m.
+    pub reach: S,
+    /// The share of the distance that the displacement may use up.
+    pub share: S,
+}
+
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// Checks every field.
     ///
@@ -163,22 +177,16 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.spec.center + self.offset
     }
 
-    /// Calls `keep(n, gap)` for half-spaces n.delta >= -gap (n of unit length, world's frame; gap in m) of displacements of x that keep it
-    /// out of the hard core (a wall: inside), however far within `step` it goes; where there is a choice, with room for `wish`. Surfaces farther than `reach` may be left out.
-    pub(crate) fn keep_out(
-        &self,
-        x: &Vector<S, D>,
-        wish: &Vector<S, D>,
-        step: S,
-        reach: S,
-        mut keep: impl FnMut(Vector<S, D>, S),
-    ) {
+    /// Calls `keep(n, gap)` for half-spaces n.delta >= -gap (n of unit length, world's frame; gap in m) of displacements from a place that keep
+    /// out of the hard core (a wall: inside).
+    pub(crate) fn keep_out(&self, from: &Outlook<'_, S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
         if self.plain {
-            return self.keep_out_of_ellipsoid(x, keep);
+            return self.keep_out_of_ellipsoid(from.at, keep);
         }
-        let u = self.local(x).component_mul(&self.hard);
-        let wish = self.spec.rotation.tr_mul(wish).component_mul(&self.hard);
-        let place = Place { u, wish, inverse: &self.hard, wall: self.spec.wall, step, reach };
+        let u = self.local(from.at).component_mul(&self.hard);
+        let wish = self.spec.rotation.tr_mul(from.wish).component_mul(&self.hard);
+        let Outlook { step, reach, share, .. } = *from;
+        let place = Place { u, wish, inverse: &self.hard, wall: self.spec.wall, step, reach, share };
         self.body.keep_out(&self.spec.shape, &place, |normal, slack| {
             let length = norm(&normal);
             if length > S::zero() {
@@ -223,7 +231,8 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let one = S::one();
         if self.spec.wall {
             let gauge = (one - change).max(S::zero());
-            gamma * (gauge * gauge).powi(self.body.power()) <= one
+            // Beyond FAR it is not told how far.
+            gamma.min(S::FAR) * (gauge * gauge).powi(self.body.power()) <= one
         } else {
             gamma <= ((one + change) * (one + change)).powi(self.body.power())
         }

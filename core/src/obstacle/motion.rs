@@ -38,11 +38,15 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// Makes the core larger by ageing, for `dt` seconds at `rate` m/s. The soft layer stays where it is: margin wins over softness.
     pub(crate) fn age(&mut self, rate: S, dt: S) {
         self.aged += rate * dt;
+        self.inflate();
+    }
+
+    /// From now on it grows by ageing, at `rate` m/s.
+    pub(crate) fn ages(&mut self, rate: S) {
         if rate != self.ageing {
             self.ageing = rate;
             self.set_speeds();
         }
-        self.inflate();
     }
 
     /// Stops all motion: nobody knows any more.

@@ -61,7 +61,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     #[inline(never)]
     pub(crate) fn soft_layer(&self, x: &Vector<S, D>, sample: Sample<S, D>) -> Option<SoftLayer<S, D>> {
         let gamma_soft = self.gamma_soft(x);
-let normal = unit(&sample.outward);
+        let normal = unit(&sample.outward);
         (sample.gamma > S::one() && gamma_soft <= S::one()).then(|| SoftLayer {
             gamma_soft,
             normal: if self.spec.wall { -normal } else { normal },

@@ -87,6 +87,8 @@ pub(crate) struct Place<'a, S: Scalar, const D: usize> {
     pub step: S,
     /// Surfaces farther than this need no half-space, m.
     pub reach: S,
+    /// The share of the distance that the displacement may use up.
+    pub share: S,
 }
 
 impl<S: Scalar, const D: usize> Shape<S, D> {

@@ -177,7 +177,7 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
     /// beyond the edges, between the rays through their ends. Off each of these, behind any of its sides, keeps off the whole, corners
     /// and notches included.
     fn keep_out(&self, at: &Place<'_, S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
-        let (u, wish) = (plane(&at.u), plane(&at.wish));
+        let here = Here { u: plane(&at.u), wish: plane(&at.wish), share: at.share };
         let fastest = at.inverse.iter().fold(S::zero(), |m, i| m.max(*i));
         let mut off = |piece: &Piece<S>| {
             if let Some(side) = &piece.best
@@ -189,8 +189,8 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
         if at.wall {
             for edge in self.edges() {
                 let mut piece = Piece::new(edge.from);
-                piece.edge(&edge, u, wish, -S::one());
-                piece.close(edge.to, u, wish);
+                piece.edge(&edge, &here, -S::one());
+                piece.close(edge.to, &here);
                 off(&piece);
             }
             return;
@@ -200,7 +200,7 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
         let Some(notch) = notch else {
             // Convex: one piece, and all its sides are edges.
             let mut whole = Piece::new([S::zero(); 2]);
-            self.edges().for_each(|edge| whole.edge(&edge, u, wish, S::one()));
+            self.edges().for_each(|edge| whole.edge(&edge, &here, S::one()));
             return off(&whole);
         };
         // From the first notch on, once round.
@@ -210,18 +210,18 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
             let open = match piece.take() {
                 Some((open, last)) if !is_notch(&last, &edge) && cross(open.from, edge.to) > S::zero() => Some(open),
                 Some((mut done, last)) => {
-                    done.close(last.to, u, wish);
+                    done.close(last.to, &here);
                     off(&done);
                     None
                 }
                 None => None,
             };
             let mut open = open.unwrap_or_else(|| Piece::new(edge.from));
-            open.edge(&edge, u, wish, S::one());
+            open.edge(&edge, &here, S::one());
             piece = Some((open, edge));
         }
         if let Some((mut last, edge)) = piece {
-            last.close(edge.to, u, wish);
+            last.close(edge.to, &here);
             off(&last);
         }
     }
@@ -239,11 +239,25 @@ struct Piece<S> {
     best: Option<Side<S>>,
 }
 
-/// The side's normal, of any length, and how far u is beyond it and will be if it goes on as it wishes, times that length.
+/// The side's normal, of any length, how far u is beyond it, and how much of the share that may be used up the wish leaves (it is cut by what is
+/// lacking), times that length.
 struct Side<S> {
     normal: [S; 2],
     gap: S,
-    then: S,
+    left: S,
+}
+
+/// The point to keep out, where it wishes to go, and the share of its distance that it may use up.
+struct Here<S> {
+    u: [S; 2],
+    wish: [S; 2],
+    share: S,
+}
+
+impl<S: Scalar> Here<S> {
+    fn side(&self, normal: [S; 2], gap: S) -> Side<S> {
+        Side { normal, gap, left: gap * self.share + dot(normal, self.wish) }
+    }
 }
 
 impl<S: Scalar> Piece<S> {
@@ -252,30 +266,30 @@ impl<S: Scalar> Piece<S> {
     }
 
     /// One of its outer sides.
-    fn edge(&mut self, edge: &Edge<S>, u: [S; 2], wish: [S; 2], sign: S) {
+    fn edge(&mut self, edge: &Edge<S>, here: &Here<S>, sign: S) {
         let normal = [edge.normal[0] * sign, edge.normal[1] * sign];
-        let gap = (dot(edge.normal, u) - S::one()) * sign;
-        self.consider(Side { normal, gap, then: gap + dot(normal, wish) });
+        let gap = (dot(edge.normal, here.u) - S::one()) * sign;
+        self.consider(here.side(normal, gap));
     }
 
     /// Its two sides along the rays through its first and last corners. Only whoever is beyond one keeps behind it: from within, the way out is
     /// over an edge.
-    fn close(&mut self, to: [S; 2], u: [S; 2], wish: [S; 2]) {
+    fn close(&mut self, to: [S; 2], here: &Here<S>) {
         for (v, sign) in [(self.from, S::one()), (to, -S::one())] {
             let normal = [v[1] * sign, -v[0] * sign];
-            let gap = dot(normal, u);
+            let gap = dot(normal, here.u);
             if gap > S::zero() {
-                self.consider(Side { normal, gap, then: gap + dot(normal, wish) });
+                self.consider(here.side(normal, gap));
             }
         }
     }
 
-    /// Of the sides that u is beyond, the one that is least in its way; if it is beyond none, the one it is least behind.
+    /// Of the sides that u is beyond, the one that cuts its wish the least; if it is beyond none, the one it is least behind.
     fn consider(&mut self, side: Side<S>) {
         let better = self.best.as_ref().is_none_or(|best| {
             let (own, other) = (size(side.normal), size(best.normal));
             match (side.gap > S::zero(), best.gap > S::zero()) {
-                (true, true) => side.then * other > best.then * own,
+                (true, true) => side.left * other > best.left * own,
                 (false, false) => side.gap * other > best.gap * own,
                 (beyond, _) => beyond,
             }

@@ -90,7 +90,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         if age > S::zero() {
             obstacle.carry(age);
         }
-        if age > ageing.time_to_live {
+        if age >= ageing.time_to_live {
+            obstacle.ages(ageing.growth);
             obstacle.age(ageing.growth, age - ageing.time_to_live);
         }
         if age >= ageing.hold {
@@ -180,6 +181,10 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 entry.obstacle.age(ageing.growth, dt);
             }
             entry.age += dt;
+            if entry.age >= ageing.time_to_live {
+                // So that whoever looks next sees it coming.
+                entry.obstacle.ages(ageing.growth);
+            }
         }
         self.scan.advance(dt, ageing);
         status
@@ -200,6 +205,14 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         let (mut gamma, mut nearest) = (around.gamma, None);
         for (index, entry) in self.entries.iter().enumerate() {
             let sample = entry.obstacle.sample(x);
+            if let Some((reach, dt)) = reach {
+                // How far its surface may come in a step, and as much again for the curve of its way.
+                let fastest = sample.surface_velocity.iter().fold(S::zero(), |sum, s| sum + s.abs());
+                let reach = reach + fastest * (dt + dt);
+                if entry.obstacle.is_near(sample.gamma, reach) {
+                    let _ = around.near.push((index, reach));
+                }
+            }
             if !(sample.gamma < S::FAR) {
                 continue;
             }
@@ -210,14 +223,6 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             {
                 // Cannot be full: it has the table's own capacity.
                 let _ = around.soft.push(layer);
-            }
-            if let Some((reach, dt)) = reach {
-                // How far its surface may come in a step, and as much again for the curve of its way.
-                let fastest = sample.surface_velocity.iter().fold(S::zero(), |sum, s| sum + s.abs());
-                let reach = reach + fastest * (dt + dt);
-                if entry.obstacle.is_near(sample.gamma, reach) {
-                    let _ = around.near.push((index, reach));
-                }
             }
             if sample.gamma < gamma {
                 (gamma, nearest) = (sample.gamma, Some(entry));

@@ -100,11 +100,7 @@ fn fixed(u: &DVector<f64>, layers: &[Layer], angle: f64, gain: f64) -> DVector<f
 /// is hardly any tangential flow.
 fn tangential(u: &DVector<f64>, layer: &Layer, nominal_speed: f64) -> DVector<f64> {
     let normal = &layer.normal;
-    let side = if normal.len() == 2 {
-        turned_left(normal)
-    } else {
-        cross(&layer.leaning, normal)
-    };
+    let side = if normal.len() == 2 { turned_left(normal) } else { cross(&layer.leaning, normal) };
     let t = in_tangent_plane(u, normal) + side * (LEAN * nominal_speed);
     let norm = length(&t).max(FLOOR * nominal_speed);
     t / norm
@@ -118,8 +114,7 @@ fn with_flow(u: &DVector<f64>, f: &DVector<f64>, layers: &[Layer], gain: f64, be
     let most = beta * nominal_speed;
     let active: Vec<(&Layer, f64)> =
         layers.iter().map(|layer| (layer, layer.fade())).filter(|(_, phi)| *phi > 0.0).collect();
-    let directions: Vec<DVector<f64>> =
-        active.iter().map(|(layer, _)| tangential(u, layer, nominal_speed)).collect();
+    let directions: Vec<DVector<f64>> = active.iter().map(|(layer, _)| tangential(u, layer, nominal_speed)).collect();
     let mut speed_up = DVector::zeros(u.len());
     let mut slow_down = DVector::zeros(u.len());
     for (n, (own, phi)) in active.iter().enumerate() {

@@ -192,7 +192,7 @@ impl Body {
     }
 
     /// A vector of the obstacle's frame in the world's; of a longer one what there is room for.
-    pub(super) fn turned(&self, own: &[f64]) -> DVector<f64> {
+    pub(super) fn in_world(&self, own: &[f64]) -> DVector<f64> {
         &self.rotation * DVector::from_fn(self.rotation.nrows(), |i, _| own[i])
     }
 

@@ -34,8 +34,7 @@ pub struct HalfSpace {
 pub struct HalfSpaces {
     /// In the order of the obstacles, the scan last.
     pub all: Vec<HalfSpace>,
-    /// False where the page does not determine one: at the centre of an obstacle, in a wall whose rounding is shorter than a
-    /// step, and of a moving obstacle as far away as counts.
+    /// False where the page does not determine one: at the centre of an obstacle, in a wall where a step is longer than its rounding or what is left after the bend, and of a moving obstacle as far away as counts.
     pub complete: bool,
     /// False where there is a polygon: behind which of the sides of its pieces is kept is free. Those given are one such choice,
     /// with a triangle for each edge as pieces.
@@ -128,7 +127,10 @@ pub fn half_spaces(next: &OracleScene, x: &[f64], dt: f64) -> Result<HalfSpaces,
                 } else if body.wall {
                     let steepest = step / axes.component_mul(&body.hard).min();
                     let bend = 1.2 * 0.5 * exponent * (exponent - 1.0) * steepest.powi(2);
-                    push(n, &body.normal(&x), (1.0 - body.plain_gamma(&x) - bend) / steep);
+                    let left = 1.0 - body.plain_gamma(&x) - bend;
+                    // A step too long for the bend.
+                    complete &= left >= 0.0 || left + bend <= 0.0;
+                    push(n, &body.normal(&x), left / steep);
                 } else if steep == 0.0 {
                     complete = false;
                 } else {
