@@ -76,7 +76,7 @@ pub fn nearest<S: Scalar, const D: usize>(
     }
     let half_spaces = with_sides(half_spaces);
     let margin = tolerance * S::from_f64(4.0);
-    let exact = Programme::nearest(goal, speed, S::zero(), tolerance).solve(half_spaces);
+    let exact = Programme::nearest(goal, start, speed, S::zero(), tolerance).solve(half_spaces);
     let checked = exact.map(|velocity| (velocity, worst(half_spaces, &velocity)));
     let (velocity, violation) = checked.filter(|(_, violation)| *violation <= margin).unwrap_or_else(|| {
         let velocity = least_violation(goal, start, half_spaces, speed);
@@ -173,7 +173,7 @@ fn least_violation<S: Scalar, const D: usize>(
         least = h.violation(&velocity).max(S::zero());
     }
     let least = worst(half_spaces, &velocity) + tolerance;
-    match Programme::nearest(goal, speed, least, tolerance).solve(half_spaces) {
+    match Programme::nearest(goal, start, speed, least, tolerance).solve(half_spaces) {
         Some(nearer) if worst(half_spaces, &nearer) <= least + tolerance => nearer,
         _ => velocity,
     }
@@ -190,6 +190,8 @@ enum Goal<S: Scalar, const D: usize> {
 /// The best velocity in the ball of which no half-space is violated more than `level`.
 struct Programme<S: Scalar, const D: usize> {
     goal: Goal<S, D>,
+    /// The best velocity in all of the ball.
+    best: Vector<S, D>,
     /// Its own violation is what is allowed to the others: an offset alone is the same everywhere.
     level: HalfSpace<S, D>,
     speed: S,
@@ -232,34 +234,41 @@ fn indistinct<S: Scalar>() -> S {
 }
 
 impl<S: Scalar, const D: usize> Programme<S, D> {
-    fn nearest(goal: Vector<S, D>, speed: S, violation: S, tolerance: S) -> Self {
+    fn nearest(goal: Vector<S, D>, best: Vector<S, D>, speed: S, violation: S, tolerance: S) -> Self {
         let level = HalfSpace { normal: Vector::zeros(), offset: violation };
-        Self { goal: Goal::Near(goal), level, speed, tolerance }
+        Self { goal: Goal::Near(goal), best, level, speed, tolerance }
     }
 
     fn lowest(level: HalfSpace<S, D>, speed: S, tolerance: S) -> Self {
-        Self { goal: Goal::Along(level.normal), level, speed, tolerance }
+        let best = level.normal / norm(&level.normal) * speed;
+        Self { goal: Goal::Along(level.normal), best, level, speed, tolerance }
     }
 
     fn solve(&self, half_spaces: &mut [HalfSpace<S, D>]) -> Option<Vector<S, D>> {
         let (centre, along) = (Vector::zeros(), Matrix::identity());
-        self.solve_on(&Flat { dimension: D, centre, radius: self.speed, along }, half_spaces)
+        self.solve_on(&Flat { dimension: D, centre, radius: self.speed, along }, self.best, half_spaces)
     }
 
-    /// The best velocity on a flat; `None` where there is none. Calls itself at most D deep.
-    fn solve_on(&self, flat: &Flat<S, D>, half_spaces: &mut [HalfSpace<S, D>]) -> Option<Vector<S, D>> {
-        let mut velocity = self.best(flat);
+    /// The best velocity on a flat, whose best whatever the half-spaces is known; `None` where there is none. Calls itself at most D deep.
+    fn solve_on(
+        &self,
+        flat: &Flat<S, D>,
+        best: Vector<S, D>,
+        half_spaces: &mut [HalfSpace<S, D>],
+    ) -> Option<Vector<S, D>> {
+        let mut velocity = best;
         for active in 0..half_spaces.len() {
             let (done, rest) = half_spaces.split_at_mut_checked(active)?;
             let bound = self.level.violation(&velocity) + self.tolerance;
             let Some(h) = worst_first(rest, &velocity, bound) else { break };
-            velocity = self.solve_on(&self.cut(flat, &h)?, done)?;
+            let boundary = self.cut(flat, &h)?;
+            velocity = self.solve_on(&boundary, self.best_on(&boundary), done)?;
         }
         Some(velocity)
     }
 
     /// The best velocity on a flat, whatever the half-spaces.
-    fn best(&self, flat: &Flat<S, D>) -> Vector<S, D> {
+    fn best_on(&self, flat: &Flat<S, D>) -> Vector<S, D> {
         if flat.dimension == 0 {
             return flat.centre;
         }
