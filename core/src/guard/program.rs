@@ -240,7 +240,7 @@ impl<S: Scalar, const D: usize> Programme<S, D> {
     }
 
     fn lowest(level: HalfSpace<S, D>, speed: S, tolerance: S) -> Self {
-        let best = level.normal * (speed / norm(&level.normal));
+        let best = level.normal / norm(&level.normal) * speed;
         Self { goal: Goal::Along(level.normal), best, level, speed, tolerance }
     }
 

@@ -56,7 +56,12 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     /// The lengths at which hard scaled coordinates are one before ageing, m, and how much longer each becomes for each metre of it.
     young: Vector<S, D>,
     per_metre: Vector<S, D>,
-    /// 1/radius of the largest ball inside, in scaled coordinates.
+    /// What follows from the shape alone: the lengths at which its scaled coordinates are one, m, and those that growth is measured by, m; how much
+    /// the surface moves where these become a metre longer, at most and at least, m; 1/radius of the largest ball inside, in scaled coordinates.
+    unit: Vector<S, D>,
+    extent: Vector<S, D>,
+    most: S,
+    least: S,
     inner: S,
     body: Body<S, D>,
     spec: ObstacleSpec<S, D>,
@@ -95,6 +100,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             return Err(ObstacleError::Reference);
         }
         let local_reference = spec.reference;
+        let extent = spec.shape.growing_extent();
         let nothing = Vector::zeros();
         let mut obstacle = Self {
             hard: nothing,
@@ -107,7 +113,11 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             swelling: S::zero(),
             slimmest: S::one(),
             young: nothing,
-            per_metre: unit.component_div(&spec.shape.growing_extent()),
+            per_metre: unit.component_div(&extent),
+            unit,
+            extent,
+            most: spec.shape.growing_most(),
+            least: spec.shape.growing_least(),
             inner: S::one() / body.inner(&spec.shape),
             body,
             spec,
@@ -117,6 +127,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             ageing: S::zero(),
         };
         obstacle.rescale();
+        obstacle.set_speeds();
         obstacle.place_reference();
         Ok(obstacle)
     }
@@ -245,8 +256,8 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// All of the hard core lies within this of the centre, m.
     pub(crate) fn outer(&self) -> S {
-        let unit = self.spec.shape.body().1;
-        let largest = unit.iter().zip(self.hard.iter()).fold(S::zero(), |m, (l, hard)| m.max(S::one() / (*l * *hard)));
+        let largest =
+            self.unit.iter().zip(self.hard.iter()).fold(S::zero(), |m, (l, hard)| m.max(S::one() / (*l * *hard)));
         self.spec.shape.outer() * largest
     }
 

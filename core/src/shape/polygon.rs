@@ -109,10 +109,15 @@ impl<S: Scalar> Scaled<'_, S> {
         self.edges().fold(S::MAX, |least, e| least.min(S::one() / S::norm(&e.normal)))
     }
 
+    /// Every corner, with the one before it.
     fn pairs(&self) -> impl Iterator<Item = ([S; 2], [S; 2])> {
         let scale = self.scale;
-        let all = self.vertices.iter().map(move |v| [v[0] * scale, v[1] * scale]);
-        all.clone().zip(all.clone().skip(1).chain(all.take(1)))
+        let scaled = move |v: &[S; 2]| [v[0] * scale, v[1] * scale];
+        let mut before = self.vertices.last().map_or([S::zero(); 2], scaled);
+        self.vertices.iter().map(move |v| {
+            let here = scaled(v);
+            (core::mem::replace(&mut before, here), here)
+        })
     }
 
     fn edges(&self) -> impl Iterator<Item = Edge<S>> {
@@ -195,20 +200,20 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
             }
             return;
         }
-        let notch =
-            self.edges().zip(self.edges().skip(1).chain(self.edges().take(1))).position(|(a, b)| is_notch(&a, &b));
-        let Some(notch) = notch else {
+        let edges: heapless::Vec<Edge<S>, MAX_VERTICES> = self.edges().collect();
+        let mut before = edges.last();
+        let notch = edges.iter().position(|edge| before.replace(edge).is_some_and(|before| is_notch(before, edge)));
+        let Some((rest, first)) = notch.and_then(|notch| edges.split_at_checked(notch)) else {
             // Convex: one piece, and all its sides are edges.
             let mut whole = Piece::new([S::zero(); 2]);
-            self.edges().for_each(|edge| whole.edge(&edge, &here, S::one()));
+            edges.iter().for_each(|edge| whole.edge(edge, &here, S::one()));
             return off(&whole);
         };
         // From the first notch on, once round.
-        let mut piece: Option<(Piece<S>, Edge<S>)> = None;
-        let n = self.vertices.len();
-        for edge in self.edges().skip(notch + 1).chain(self.edges().take(notch + 1)).take(n) {
+        let mut piece: Option<(Piece<S>, &Edge<S>)> = None;
+        for edge in first.iter().chain(rest) {
             let open = match piece.take() {
-                Some((open, last)) if !is_notch(&last, &edge) && cross(open.from, edge.to) > S::zero() => Some(open),
+                Some((open, last)) if !is_notch(last, edge) && cross(open.from, edge.to) > S::zero() => Some(open),
                 Some((mut done, last)) => {
                     done.close(last.to, &here);
                     off(&done);
@@ -217,7 +222,7 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
                 None => None,
             };
             let mut open = open.unwrap_or_else(|| Piece::new(edge.from));
-            open.edge(&edge, &here, S::one());
+            open.edge(edge, &here, S::one());
             piece = Some((open, edge));
         }
         if let Some((mut last, edge)) = piece {
