@@ -30,7 +30,7 @@ fn compare<const D: usize>(seed: u64, random: &RandomScene, dt: f64, compared: &
     for (obstacle, age) in next.obstacles.iter_mut().zip(ages) {
         // One may come of age within the step.
         obstacle.aged = rate * (age + dt - time_to_live).max(0.0);
-        obstacle.ageing = if age + dt > *time_to_live { *rate } else { 0.0 };
+        obstacle.ageing = if age + dt >= *time_to_live { *rate } else { 0.0 };
     }
     for point in &random.points {
         let wanted = evaluate(&scene, &point.x, None).unwrap();

@@ -18,6 +18,9 @@ const ROUNDING: f64 = 16.0;
 /// Nor less than this, m.
 const SKIN: f64 = 0.0000152587890625;
 
+/// The share of what is lacking that is made up for in the outer half of the skin.
+const HOLD: f64 = 0.06;
+
 /// A half-space of displacements: n.delta >= -gap.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HalfSpace {
@@ -210,9 +213,14 @@ fn bounds(spaces: &HalfSpaces, x: &[f64], alpha: f64, dt: f64) -> Vec<Bound> {
         .all
         .iter()
         .map(|space| {
-            let gap = space.gap - SKIN.max(ROUNDING * f64::EPSILON * size);
-            let least = if gap > 0.0 { -alpha * gap / dt } else { -gap / dt };
-            Bound { normal: DVector::from_column_slice(&space.normal), least }
+            let skin = SKIN.max(ROUNDING * f64::EPSILON * size);
+            let room = space.gap - skin;
+            let share = match room {
+                room if room > 0.0 => alpha,
+                _ if space.gap >= 0.5 * skin => HOLD,
+                _ => 1.0,
+            };
+            Bound { normal: DVector::from_column_slice(&space.normal), least: -share * room / dt }
         })
         .collect()
 }
