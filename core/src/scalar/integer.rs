@@ -45,42 +45,83 @@ fn unsigned_by_halves(a: u32, b: u32) -> u64 {
     (u64::from(high) << 32) | u64::from((second << 16) | lower(low))
 }
 
-/// p / 2^BITS rounded down, or the end of the range.
+/// a b / 2^BITS to the nearest, ties upwards, or the end of the range.
 #[inline]
-pub(super) fn narrowed<const BITS: u32>(p: i64) -> i32 {
-    // Fits if the bits above the result's sign are all like it: one comparison of the upper word.
-    let (upper, room) = ((p >> 32) as i32, 1_u32 << (BITS - 1));
-    if (upper as u32).wrapping_add(room) < room << 1 {
-        (p >> BITS) as i32
-    } else if upper < 0 {
-        i32::MIN
-    } else {
-        i32::MAX
+pub(super) fn scaled<const BITS: u32>(a: i32, b: i32) -> i32 {
+    if LONG_MULTIPLY {
+        return narrowed::<BITS>(product(a, b).wrapping_add(1 << (BITS - 1))).unwrap_or(end(a ^ b));
     }
+    scaled_by_halves::<BITS>(a, b)
+}
+
+/// The same from four products of 16 bits, as in [`by_halves`]. The lowest 16 bits of a b decide nothing; half of the last digit goes in
+/// above them.
+#[inline]
+fn scaled_by_halves<const BITS: u32>(a: i32, b: i32) -> i32 {
+    let (upper, lower) = (|x: i32| x >> 16, |x: i32| x & 0xffff);
+    let low = (lower(a) as u32).wrapping_mul(lower(b) as u32);
+    let first = upper(a).wrapping_mul(lower(b)).wrapping_add((low >> 16) as i32);
+    let second = lower(a).wrapping_mul(upper(b)).wrapping_add(lower(first)).wrapping_add(1 << (BITS - 17));
+    let high = upper(a).wrapping_mul(upper(b)).wrapping_add(upper(first)).wrapping_add(upper(second));
+    let shifted = high << (32 - BITS);
+    if shifted >> (32 - BITS) == high { shifted | (lower(second) >> (BITS - 16)) } else { end(a ^ b) }
+}
+
+/// The end of the range on the side of x.
+#[cold]
+#[inline(never)]
+pub(super) fn end(x: i32) -> i32 {
+    if x < 0 { i32::MIN } else { i32::MAX }
+}
+
+/// p / 2^BITS rounded down, if it fits.
+#[inline]
+pub(super) fn narrowed<const BITS: u32>(p: i64) -> Option<i32> {
+    // It fits if the bits above the result's sign are all like it: one comparison of the upper word.
+    let high = (p >> 32) as i32;
+    let shifted = high << (32 - BITS);
+    (shifted >> (32 - BITS) == high).then_some(shifted | (p as u32 >> BITS) as i32)
 }
 
 /// n 2^BITS / d to the nearest, ties upwards; 2^31 where it is more or d = 0. Both n and d are at most 2^31.
 ///
-/// A reciprocal good to 27 digits gives the quotient within 11, and within one where it is below 2^27; what it leaves says which
-/// whole number is the nearest.
+/// A reciprocal good to 26 digits and never too large gives a quotient that is never too large either, short by up to 21, and by no more than
+/// 2 where it is below 2^27. What it leaves is thus below 2^32, so 32 bits of it are all of it, and says which whole number is the nearest.
 pub(super) fn quotient<const BITS: u32>(n: u32, d: u32) -> u32 {
     if n >> (31 - BITS) >= d {
         return 1 << 31;
     }
-    let zeros = d.leading_zeros();
-    let reciprocal = reciprocal(d << (zeros & 31));
-    let mut quotient = shifted(unsigned_product(n, reciprocal), 62 - BITS - zeros);
-    let mut rest = (u64::from(n) << BITS).wrapping_sub(unsigned_product(quotient, d)) as i64;
-    let d = i64::from(d);
-    while rest + rest >= d {
+    let (normal, zeros) = normalised(d);
+    let mut quotient = shifted(unsigned_product(n, reciprocal(normal)), 62 - BITS - zeros);
+    let mut rest = (n << BITS).wrapping_sub(quotient.wrapping_mul(d));
+    while rest >= d {
         rest -= d;
         quotient += 1;
     }
-    while rest + rest < -d {
-        rest += d;
-        quotient -= 1;
+    if rest >= d - rest { quotient + 1 } else { quotient }
+}
+
+/// x with its first digit moved to the highest place, and by how many places; x is not zero.
+#[inline]
+pub(super) fn normalised(x: u32) -> (u32, u32) {
+    if LONG_MULTIPLY {
+        // A processor that has the one instruction has the other.
+        let zeros = x.leading_zeros();
+        return (x << (zeros & 31), zeros);
     }
-    quotient
+    normalised_by_halves(x)
+}
+
+#[inline]
+fn normalised_by_halves(mut x: u32) -> (u32, u32) {
+    let mut zeros = 0;
+    for by in [16, 8, 4, 2, 1] {
+        if x >> (32 - by) == 0 {
+            x <<= by;
+            zeros += by;
+        }
+    }
+    (x, zeros)
 }
 
 /// p / 2^by, rounded down, for a result that fits; by from 1 to 63. Half of p at a time, for a shift of 64 bits would be a call.
@@ -90,18 +131,25 @@ fn shifted(p: u64, by: u32) -> u32 {
     if by >= 32 { upper >> (by & 31) } else { (upper << ((32 - by) & 31)) | (lower >> (by & 31)) }
 }
 
-/// 2^62 / d for d from 2^31 on, to 27 digits: Newton's r (2 - d r), which doubles the digits.
+/// 2^62 / d for d from 2^31 on, to 26 digits and never more than it is: Newton's r (2 - d r), which doubles the digits.
 #[inline]
 fn reciprocal(d: u32) -> u32 {
+    let (x, r) = (d >> 16, short_reciprocal(d));
+    // The last step with all digits of d: what 1 - D r is, in 2^-31.
+    let missing = (1_u32 << 31).wrapping_sub(x * r + (((d & 0xffff) * r) >> 16)) as i32;
+    ((r << 15) - 1).wrapping_add_signed((r as i32 * (missing >> 2)) >> 14)
+}
+
+/// 2^47 / d for d from 2^31 on, to 14 digits.
+#[inline]
+pub(super) fn short_reciprocal(d: u32) -> u32 {
     // D = d/2^31 from 1 to 2; r in 2^-16 is 1/D, at first by the best line, 24/17 - 8/17 D, to 4 digits.
     let x = d >> 16;
     let mut r = 92_521 - ((x * 61_681) >> 16);
     for _ in 0..2 {
         r = (r * ((1 << 16) - ((x * r) >> 16))) >> 15;
     }
-    // The last step with all digits of d: what 1 - D r is, in 2^-31.
-    let missing = (1_u32 << 31).wrapping_sub(x * r + (((d & 0xffff) * r) >> 16)) as i32;
-    (r << 15).wrapping_add_signed((r as i32 * (missing >> 2)) >> 14)
+    r
 }
 
 /// The square root to the nearest, at most 2^31 - 1.
@@ -117,10 +165,10 @@ pub(super) fn root(square: u64) -> u32 {
     // The first 32 digits, beginning at an even place.
     let (upper, lower) = ((square >> 32) as u32, square as u32);
     let (leading, shift) = if upper == 0 {
-        let shift = lower.leading_zeros() & 30;
-        (lower << shift, 32 + shift)
+        let (leading, shift) = normalised(lower);
+        (leading >> (shift & 1), 32 + (shift & 30))
     } else {
-        let shift = upper.leading_zeros() & 30;
+        let shift = normalised(upper).1 & 30;
         ((upper << shift) | ((lower >> 1) >> (31 - shift)), shift)
     };
     let mut root = normal_root(leading) >> (shift >> 1);
@@ -181,10 +229,26 @@ mod tests {
     }
 
     #[test]
+    fn both_ways_to_scale_and_to_normalise_agree() {
+        for (a, b) in telling().flat_map(|a| telling().map(move |b| (a, b))) {
+            let exact =
+                ((i64::from(a) * i64::from(b)).saturating_add(1 << 19) >> 20).clamp(i32::MIN.into(), i32::MAX.into());
+            assert_eq!(i64::from(scaled_by_halves::<20>(a, b)), exact, "{a} {b}");
+            assert_eq!(i64::from(scaled::<20>(a, b)), exact, "{a} {b}");
+        }
+        for x in telling().map(|x| x as u32).filter(|x| *x != 0) {
+            assert_eq!(normalised_by_halves(x), (x << x.leading_zeros(), x.leading_zeros()));
+        }
+    }
+
+    #[test]
     fn estimates_are_as_good_as_said() {
         for n in (1_u32 << 31..=u32::MAX).step_by(1009).chain([u32::MAX, u32::MAX - 1]) {
             let exact = libm::exp2(62.0) / f64::from(n);
-            assert!((f64::from(reciprocal(n)) / exact - 1.0).abs() < libm::exp2(-27.5), "{n}");
+            let error = f64::from(reciprocal(n)) / exact - 1.0;
+            assert!(error <= 0.0 && error > -libm::exp2(-26.5), "{n}");
+            let error = f64::from(short_reciprocal(n)) / exact * libm::exp2(15.0) - 1.0;
+            assert!(error.abs() < libm::exp2(-14.0), "{n}");
         }
         for n in (1_u32 << 30..=u32::MAX).step_by(2003).chain([u32::MAX, u32::MAX - 1]) {
             let exact = libm::sqrt(f64::from(n) * libm::exp2(32.0));
