@@ -109,19 +109,32 @@ pub(super) fn normalised(x: u32) -> (u32, u32) {
         let zeros = x.leading_zeros();
         return (x << (zeros & 31), zeros);
     }
-    normalised_by_halves(x)
+    normalised_by_bytes(x)
 }
 
+/// The same from the zeros of a byte, in a table.
 #[inline]
-fn normalised_by_halves(mut x: u32) -> (u32, u32) {
-    let mut zeros = 0;
-    for by in [16, 8, 4, 2, 1] {
-        if x >> (32 - by) == 0 {
-            x <<= by;
-            zeros += by;
+fn normalised_by_bytes(mut x: u32) -> (u32, u32) {
+    const ZEROS: [u8; 256] = {
+        let mut zeros = [8; 256];
+        let mut byte = 1;
+        while byte < 256 {
+            zeros[byte] = (byte as u8).leading_zeros() as u8;
+            byte += 1;
         }
+        zeros
+    };
+    let mut zeros = 0;
+    if x >> 16 == 0 {
+        x <<= 16;
+        zeros = 16;
     }
-    (x, zeros)
+    if x >> 24 == 0 {
+        x <<= 8;
+        zeros += 8;
+    }
+    let last = u32::from(ZEROS[usize::from((x >> 24) as u8)]);
+    (x << (last & 31), zeros + last)
 }
 
 /// p / 2^by, rounded down, for a result that fits; by from 1 to 63. Half of p at a time, for a shift of 64 bits would be a call.
@@ -237,7 +250,7 @@ mod tests {
             assert_eq!(i64::from(scaled::<20>(a, b)), exact, "{a} {b}");
         }
         for x in telling().map(|x| x as u32).filter(|x| *x != 0) {
-            assert_eq!(normalised_by_halves(x), (x << x.leading_zeros(), x.leading_zeros()));
+            assert_eq!(normalised_by_bytes(x), (x << x.leading_zeros(), x.leading_zeros()));
         }
     }
 
