@@ -22,7 +22,7 @@ pub use spec::{MAX_RATIO, MAX_SPEED, MIN_AXIS, ObstacleError, ObstacleSpec};
 pub(crate) use sample::{Sample, SoftLayer};
 
 use crate::shape::{Body, Place, root};
-use crate::{Scalar, Vector, norm};
+use crate::{Scalar, Vector, norm, times, transposed_times};
 
 /// A checked obstacle, at its present pose and size.
 ///
@@ -129,7 +129,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         }
         // gamma is homogeneous of degree 2p: its gradient times u is 2p gamma.
         let length = S::from_f64(2.0 * f64::from(self.body.power())) * gamma / along;
-        let gradient = self.spec.rotation * (direction.component_mul(&self.hard) * length);
+        let gradient = times(&self.spec.rotation, &(direction.component_mul(&self.hard) * length));
         if self.spec.wall { -gradient / (gamma * gamma) } else { gradient }
     }
 
@@ -152,7 +152,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// The velocity of the obstacle's matter at x, m/s: v + w x (x - c), without growth.
     pub fn surface_velocity(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        self.spec.velocity + self.spec.spin * (x - self.spec.center)
+        self.spec.velocity + times(&self.spec.spin, &(x - self.spec.center))
     }
 
     /// The reference point in the world's frame, m: its own, or one that it shares with obstacles it overlaps.
@@ -171,13 +171,13 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         mut keep: impl FnMut(Vector<S, D>, S),
     ) {
         let u = self.local(x).component_mul(&self.hard);
-        let wish = self.spec.rotation.tr_mul(wish).component_mul(&self.hard);
+        let wish = transposed_times(&self.spec.rotation, wish).component_mul(&self.hard);
         let place = Place { u, wish, inverse: &self.hard, wall: self.spec.wall, step, reach };
         self.body.keep_out(&self.spec.shape, &place, |normal, slack| {
             let length = norm(&normal);
             if length > S::zero() {
                 let inverse = S::one() / length;
-                keep(self.spec.rotation * (normal * inverse), slack * inverse);
+                keep(times(&self.spec.rotation, &(normal * inverse)), slack * inverse);
             }
         });
     }
@@ -214,7 +214,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// q = Q' (x - c)
     #[inline(always)]
     fn local(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        self.spec.rotation.tr_mul(&(x - self.spec.center))
+        transposed_times(&self.spec.rotation, &(x - self.spec.center))
     }
 
     /// gamma, or 1/gamma for a wall.
@@ -229,7 +229,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     }
 
     fn on_surface(&self, direction: &Vector<S, D>, inverse: &Vector<S, D>) -> Vector<S, D> {
-        let q = self.spec.rotation.tr_mul(direction);
+        let q = transposed_times(&self.spec.rotation, direction);
         let u = q.component_mul(inverse);
         let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
         if !(largest > S::zero()) {

@@ -1,7 +1,7 @@
 //! An obstacle as it looks from one point.
 
 use super::Obstacle;
-use crate::{Scalar, Vector, norm};
+use crate::{Scalar, Vector, norm, times};
 
 /// What the modulation wants to know of an obstacle.
 #[derive(Clone, Debug)]
@@ -34,7 +34,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     pub(crate) fn sample(&self, x: &Vector<S, D>) -> Sample<S, D> {
         let q = self.local(x);
         let (gamma, direction) = self.body.level(&self.spec.shape, &q.component_mul(&self.hard));
-        let shape_normal = self.spec.rotation * direction.component_mul(&self.hard);
+        let shape_normal = times(&self.spec.rotation, &direction.component_mul(&self.hard));
         let mut surface_velocity = Vector::zeros();
         if self.moves {
             surface_velocity = self.surface_velocity(x);

@@ -204,14 +204,21 @@ impl Scalar for Fixed {
         Self::from_bits(whole + 1)
     }
     fn norm(components: &[Self]) -> Self {
-        let square = components.iter().fold(0_u64, |sum, x| {
-            let square = integer::product(x.to_bits(), x.to_bits());
-            sum.saturating_add(square.unsigned_abs())
-        });
+        // The sum of four may be 2^64.
+        let squares = components.iter().map(|x| integer::square(x.to_bits()));
+        let square = if components.len() <= 3 {
+            squares.fold(0, u64::wrapping_add)
+        } else {
+            squares.fold(0, u64::saturating_add)
+        };
         Self::from_bits(integer::root(square) as i32)
     }
     #[inline]
     fn dot(a: &[Self], b: &[Self]) -> Self {
+        if let ([a, c], [b, d]) = (a, b) {
+            let [a, b, c, d] = [a, b, c, d].map(|x| x.to_bits());
+            return Self::from_bits(integer::scaled_pair::<DIGITS>(a, b, c, d));
+        }
         let products = || a.iter().zip(b).map(|(a, b)| integer::product(a.to_bits(), b.to_bits()));
         // A product is at most 2^62. The sum of three may leave 64 bits, but not come back to where a result fits.
         if a.len() <= 3

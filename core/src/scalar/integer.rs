@@ -11,6 +11,12 @@ pub(super) fn product(a: i32, b: i32) -> i64 {
     if LONG_MULTIPLY { i64::from(a) * i64::from(b) } else { by_halves(a, b) }
 }
 
+/// a^2
+#[inline]
+pub(super) fn square(a: i32) -> u64 {
+    product(a, a) as u64
+}
+
 /// The upper half of a b, rounded down.
 #[inline]
 pub(super) fn high(a: i32, b: i32) -> i32 {
@@ -65,6 +71,41 @@ fn scaled_by_halves<const BITS: u32>(a: i32, b: i32) -> i32 {
     let high = upper(a).wrapping_mul(upper(b)).wrapping_add(upper(first)).wrapping_add(upper(second));
     let shifted = high << (32 - BITS);
     if shifted >> (32 - BITS) == high { shifted | (lower(second) >> (BITS - 16)) } else { end(a ^ b) }
+}
+
+/// (a b + c d) / 2^BITS to the nearest, ties upwards, or the end of the range.
+#[inline]
+pub(super) fn scaled_pair<const BITS: u32>(a: i32, b: i32, c: i32, d: i32) -> i32 {
+    if LONG_MULTIPLY {
+        let sum = product(a, b).wrapping_add(product(c, d)).wrapping_add(1 << (BITS - 1));
+        return narrowed::<BITS>(sum).unwrap_or_else(|| end_of_pair((sum >> 32) as i32));
+    }
+    scaled_pair_by_halves::<BITS>(a, b, c, d)
+}
+
+/// The same as in [`scaled_by_halves`], the sums one after the other. A function of its own, for it takes all registers there are.
+#[inline(never)]
+fn scaled_pair_by_halves<const BITS: u32>(a: i32, b: i32, c: i32, d: i32) -> i32 {
+    let (upper, lower) = (|x: i32| x >> 16, |x: i32| x & 0xffff);
+    let low = (lower(a) as u32).wrapping_mul(lower(b) as u32);
+    let first = upper(a).wrapping_mul(lower(b)).wrapping_add((low >> 16) as i32);
+    let second = lower(a).wrapping_mul(upper(b)).wrapping_add(lower(first));
+    let high = upper(a).wrapping_mul(upper(b)).wrapping_add(upper(first)).wrapping_add(upper(second));
+    let low = (lower(c) as u32).wrapping_mul(lower(d) as u32).wrapping_add(low & 0xffff);
+    let first = upper(c).wrapping_mul(lower(d)).wrapping_add((low >> 16) as i32);
+    let middle = lower(second) + (1 << (BITS - 17));
+    let second = lower(c).wrapping_mul(upper(d)).wrapping_add(lower(first));
+    let high =
+        upper(c).wrapping_mul(upper(d)).wrapping_add(high).wrapping_add(upper(first)).wrapping_add(upper(second));
+    let middle = middle + lower(second);
+    let high = high.wrapping_add(upper(middle));
+    let shifted = high << (32 - BITS);
+    if shifted >> (32 - BITS) == high { shifted | (lower(middle) >> (BITS - 16)) } else { end_of_pair(high) }
+}
+
+/// The end of the range for a sum of two products with this upper word: only 2^63, of four least numbers, looks as if it were below zero.
+fn end_of_pair(high: i32) -> i32 {
+    end(high.wrapping_sub(1))
 }
 
 /// The end of the range on the side of x.
@@ -248,6 +289,12 @@ mod tests {
                 ((i64::from(a) * i64::from(b)).saturating_add(1 << 19) >> 20).clamp(i32::MIN.into(), i32::MAX.into());
             assert_eq!(i64::from(scaled_by_halves::<20>(a, b)), exact, "{a} {b}");
             assert_eq!(i64::from(scaled::<20>(a, b)), exact, "{a} {b}");
+            for (c, d) in telling().flat_map(|c| [i32::MIN, i32::MAX, a, !b, 5].map(|d| (c, d))) {
+                let sum = i128::from(a) * i128::from(b) + i128::from(c) * i128::from(d);
+                let exact = ((sum + (1 << 19)) >> 20).clamp(i32::MIN.into(), i32::MAX.into());
+                assert_eq!(i128::from(scaled_pair_by_halves::<20>(a, b, c, d)), exact, "{a} {b} {c} {d}");
+                assert_eq!(i128::from(scaled_pair::<20>(a, b, c, d)), exact, "{a} {b} {c} {d}");
+            }
         }
         for x in telling().map(|x| x as u32).filter(|x| *x != 0) {
             assert_eq!(normalised_by_bytes(x), (x << x.leading_zeros(), x.leading_zeros()));
