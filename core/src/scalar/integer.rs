@@ -55,7 +55,8 @@ fn unsigned_by_halves(a: u32, b: u32) -> u64 {
 #[inline]
 pub(super) fn scaled<const BITS: u32>(a: i32, b: i32) -> i32 {
     if LONG_MULTIPLY {
-        return narrowed::<BITS>(product(a, b).wrapping_add(1 << (BITS - 1))).unwrap_or(end(a ^ b));
+        let rounded = product(a, b).wrapping_add(1 << (BITS - 1));
+        return narrowed::<BITS>(rounded).unwrap_or_else(|| end(a ^ b));
     }
     scaled_by_halves::<BITS>(a, b)
 }
@@ -70,7 +71,7 @@ fn scaled_by_halves<const BITS: u32>(a: i32, b: i32) -> i32 {
     let second = lower(a).wrapping_mul(upper(b)).wrapping_add(lower(first)).wrapping_add(1 << (BITS - 17));
     let high = upper(a).wrapping_mul(upper(b)).wrapping_add(upper(first)).wrapping_add(upper(second));
     let shifted = high << (32 - BITS);
-    if shifted >> (32 - BITS) == high { shifted | (lower(second) >> (BITS - 16)) } else { end(a ^ b) }
+    if shifted >> (32 - BITS) == high { shifted | (lower(second) >> (BITS - 16)) } else { end(high) }
 }
 
 /// (a b + c d) / 2^BITS to the nearest, ties upwards, or the end of the range.
