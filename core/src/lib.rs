@@ -72,3 +72,10 @@ pub(crate) fn transposed_times<S: Scalar, const D: usize>(m: &Matrix<S, D>, v: &
         S::dot(&column, v.as_slice())
     })
 }
+
+/// The length of v, and v/|v|, or zero.
+#[inline(always)]
+pub(crate) fn unit<S: Scalar, const D: usize>(v: &Vector<S, D>) -> (S, Vector<S, D>) {
+    let (length, unit) = S::unit(v.data.0[0]);
+    (length, unit.into())
+}

@@ -1,7 +1,7 @@
 //! An obstacle as it looks from one point.
 
 use super::Obstacle;
-use crate::{Scalar, Vector, norm, times};
+use crate::{Scalar, Vector, times, unit};
 
 /// What the modulation wants to know of an obstacle.
 #[derive(Clone, Debug)]
@@ -39,7 +39,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         if self.moves {
             surface_velocity = self.surface_velocity(x);
             if self.swelling != S::zero() {
-                surface_velocity += unit(&shape_normal) * self.swelling;
+                surface_velocity += unit(&shape_normal).1 * self.swelling;
             }
         }
         let arm = x - self.spec.center - self.offset;
@@ -64,14 +64,9 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let gamma_soft = self.gamma_soft(x);
         (gamma_soft <= S::one()).then(|| SoftLayer {
             gamma_soft,
-            normal: unit(&outward),
+            normal: unit(&outward).1,
             arm,
             first_axis: self.spec.rotation.column(0).into_owned(),
         })
     }
-}
-
-fn unit<S: Scalar, const D: usize>(v: &Vector<S, D>) -> Vector<S, D> {
-    let length = norm(v);
-    if length > S::zero() { v / length } else { Vector::zeros() }
 }

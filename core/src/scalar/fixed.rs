@@ -213,6 +213,11 @@ impl Scalar for Fixed {
         };
         Self::from_bits(integer::root(square) as i32)
     }
+    fn unit<const D: usize>(v: [Self; D]) -> (Self, [Self; D]) {
+        const { assert!(D <= 3, "the square of four may be 2^64") };
+        let (length, unit) = integer::unit(v.map(Self::to_bits));
+        (Self::from_bits(length as i32), unit.map(|x| Self::from_bits(integer::rounded(x, 29 - DIGITS))))
+    }
     #[inline]
     fn dot(a: &[Self], b: &[Self]) -> Self {
         if let ([a, c], [b, d]) = (a, b) {

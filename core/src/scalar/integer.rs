@@ -70,8 +70,7 @@ fn scaled_by_halves<const BITS: u32>(a: i32, b: i32) -> i32 {
     let first = upper(a).wrapping_mul(lower(b)).wrapping_add((low >> 16) as i32);
     let second = lower(a).wrapping_mul(upper(b)).wrapping_add(lower(first)).wrapping_add(1 << (BITS - 17));
     let high = upper(a).wrapping_mul(upper(b)).wrapping_add(upper(first)).wrapping_add(upper(second));
-    let shifted = high << (32 - BITS);
-    if shifted >> (32 - BITS) == high { shifted | (lower(second) >> (BITS - 16)) } else { end(high) }
+    if fits::<BITS>(high) { (high << (32 - BITS)) | (lower(second) >> (BITS - 16)) } else { end(high) }
 }
 
 /// (a b + c d) / 2^BITS to the nearest, ties upwards, or the end of the range.
@@ -100,8 +99,7 @@ fn scaled_pair_by_halves<const BITS: u32>(a: i32, b: i32, c: i32, d: i32) -> i32
         upper(c).wrapping_mul(upper(d)).wrapping_add(high).wrapping_add(upper(first)).wrapping_add(upper(second));
     let middle = middle + lower(second);
     let high = high.wrapping_add(upper(middle));
-    let shifted = high << (32 - BITS);
-    if shifted >> (32 - BITS) == high { shifted | (lower(middle) >> (BITS - 16)) } else { end_of_pair(high) }
+    if fits::<BITS>(high) { (high << (32 - BITS)) | (lower(middle) >> (BITS - 16)) } else { end_of_pair(high) }
 }
 
 /// The end of the range for a sum of two products with this upper word: only 2^63, of four least numbers, looks as if it were below zero.
@@ -116,13 +114,23 @@ pub(super) fn end(x: i32) -> i32 {
     if x < 0 { i32::MIN } else { i32::MAX }
 }
 
+/// Do 64 bits with this upper word fit into 32, once divided by 2^BITS? They do if the bits above the result's sign are all like it.
+#[inline]
+fn fits<const BITS: u32>(high: i32) -> bool {
+    high >> 31 == high >> (BITS - 1)
+}
+
 /// p / 2^BITS rounded down, if it fits.
 #[inline]
 pub(super) fn narrowed<const BITS: u32>(p: i64) -> Option<i32> {
-    // It fits if the bits above the result's sign are all like it: one comparison of the upper word.
     let high = (p >> 32) as i32;
-    let shifted = high << (32 - BITS);
-    (shifted >> (32 - BITS) == high).then_some(shifted | (p as u32 >> BITS) as i32)
+    fits::<BITS>(high).then_some((high << (32 - BITS)) | (p as u32 >> BITS) as i32)
+}
+
+/// x / 2^by to the nearest, ties upwards; by from 1 to 31.
+#[inline]
+pub(super) fn rounded(x: i32, by: u32) -> i32 {
+    ((x >> (by - 1)) + 1) >> 1
 }
 
 /// n 2^BITS / d to the nearest, ties upwards; 2^31 where it is more or d = 0. Both n and d are at most 2^31.
@@ -189,8 +197,14 @@ fn shifted(p: u64, by: u32) -> u32 {
 /// 2^62 / d for d from 2^31 on, to 26 digits and never more than it is: Newton's r (2 - d r), which doubles the digits.
 #[inline]
 fn reciprocal(d: u32) -> u32 {
-    let (x, r) = (d >> 16, short_reciprocal(d));
-    // The last step with all digits of d: what 1 - D r is, in 2^-31.
+    finer_reciprocal(d, short_reciprocal(d))
+}
+
+/// The same from an estimate r, which is 2^47 / d to 14 digits.
+#[inline]
+fn finer_reciprocal(d: u32, r: u32) -> u32 {
+    let x = d >> 16;
+    // One step with all digits of d: what 1 - D r is, in 2^-31.
     let missing = (1_u32 << 31).wrapping_sub(x * r + (((d & 0xffff) * r) >> 16)) as i32;
     ((r << 15) - 1).wrapping_add_signed((r as i32 * (missing >> 2)) >> 14)
 }
@@ -217,18 +231,30 @@ pub(super) fn root(square: u64) -> u32 {
     if square == 0 {
         return 0;
     }
-    // The first 32 digits, beginning at an even place.
-    let (upper, lower) = ((square >> 32) as u32, square as u32);
-    let (leading, shift) = if upper == 0 {
-        let (leading, shift) = normalised(lower);
-        (leading >> (shift & 1), 32 + (shift & 30))
-    } else {
-        let shift = normalised(upper).1 & 30;
-        ((upper << shift) | ((lower >> 1) >> (31 - shift)), shift)
-    };
-    let mut root = normal_root(leading) >> (shift >> 1);
-    let mut rest = square.wrapping_sub(unsigned_product(root, root)) as i64;
+    let (leading, places) = leading(square);
+    let mut root = normal_root(leading).0 >> places;
+    if root >= 1 << 26 {
+        return nearest_root(square, root);
+    }
+    // Within two of it: 32 bits of what is left are all of it.
+    let mut rest = (square as u32).wrapping_sub(root.wrapping_mul(root)) as i32;
     // (root - 1/2)^2 < square < (root + 1/2)^2
+    while rest > root as i32 {
+        rest -= (root + root + 1) as i32;
+        root += 1;
+    }
+    while rest <= -(root as i32) {
+        root -= 1;
+        rest += (root + root + 1) as i32;
+    }
+    root
+}
+
+/// The same from an estimate for which 32 bits are not enough.
+#[cold]
+#[inline(never)]
+fn nearest_root(square: u64, mut root: u32) -> u32 {
+    let mut rest = square.wrapping_sub(unsigned_product(root, root)) as i64;
     while rest > i64::from(root) {
         rest -= i64::from(root) + i64::from(root) + 1;
         root += 1;
@@ -240,9 +266,39 @@ pub(super) fn root(square: u64) -> u32 {
     root.min(i32::MAX as u32)
 }
 
-/// sqrt(2^32 h) for h from 2^30 on, to 26 digits: h times Newton's reciprocal root y (3 - h y^2)/2, and its remainder.
+/// h and n such that 2^32 h is the square from its first digit on, which is h's first or second, and the root of it 2^n times the square's.
 #[inline]
-fn normal_root(h: u32) -> u32 {
+fn leading(square: u64) -> (u32, u32) {
+    let (upper, lower) = ((square >> 32) as u32, square as u32);
+    if upper == 0 {
+        let (leading, zeros) = normalised(lower);
+        (leading >> (zeros & 1), 16 + (zeros >> 1))
+    } else {
+        let zeros = normalised(upper).1 & 30;
+        ((upper << zeros) | ((lower >> 1) >> (31 - zeros)), zeros >> 1)
+    }
+}
+
+/// The length of a vector of up to three coordinates, to 26 digits and at most 2^31 - 1, and the vector of that direction whose length is 2^29;
+/// nothing for zero.
+pub(super) fn unit<const D: usize>(v: [i32; D]) -> (u32, [i32; D]) {
+    let square = v.iter().fold(0_u64, |sum, x| sum.wrapping_add(square(*x)));
+    if square == 0 {
+        return (0, v);
+    }
+    let (leading, places) = leading(square);
+    let (root, estimate) = normal_root(leading);
+    let inverse = finer_reciprocal(root, estimate).min(i32::MAX as u32) as i32;
+    let Some(places) = places.checked_sub(1) else {
+        return (i32::MAX as u32, v.map(|x| high(x >> 1, inverse)));
+    };
+    let length = (root >> places).div_ceil(2).min(i32::MAX as u32);
+    (length, v.map(|x| high(x << places, inverse)))
+}
+
+/// sqrt(2^32 h) for h from 2^30 on, to 26 digits: h times Newton's reciprocal root y (3 - h y^2)/2, and its remainder. With it y, to 14 digits.
+#[inline]
+fn normal_root(h: u32) -> (u32, u32) {
     // y in 2^-15 is the reciprocal root of h/2^32, at first by the best parabola, to 2.4 %.
     let x = h >> 16;
     let mut y = 87_518 - ((x * (107_655 - ((x * 53_693) >> 16))) >> 16);
@@ -252,7 +308,7 @@ fn normal_root(h: u32) -> u32 {
     }
     let r = (x * y) >> 15;
     let rest = h.wrapping_sub(r * r) as i32;
-    (r << 16).saturating_add_signed(((rest >> 4) * y as i32) >> 12)
+    ((r << 16).saturating_add_signed(((rest >> 4) * y as i32) >> 12), y)
 }
 
 #[cfg(test)]
@@ -313,7 +369,7 @@ mod tests {
         }
         for n in (1_u32 << 30..=u32::MAX).step_by(2003).chain([u32::MAX, u32::MAX - 1]) {
             let exact = libm::sqrt(f64::from(n) * libm::exp2(32.0));
-            assert!((f64::from(normal_root(n)) / exact - 1.0).abs() < libm::exp2(-26.0), "{n}");
+            assert!((f64::from(normal_root(n).0) / exact - 1.0).abs() < libm::exp2(-26.0), "{n}");
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! The polynomials (Remez) are evaluated with 30 digits after the point; [`high`] of a number with 30 and one with 31 has 29.
 
-use super::integer::{high, normalised, product, short_reciprocal};
+use super::integer::{high, normalised, product, rounded, short_reciprocal};
 
 /// Digits after the point.
 const DIGITS: u32 = 20;
@@ -11,12 +11,6 @@ const DIGITS: u32 = 20;
 #[inline]
 fn polynomial<const LOST: u32, const N: usize>(c: [i32; N], w: i32) -> i32 {
     c.iter().rev().copied().reduce(|sum, c| (high(sum, w) << LOST) + c).unwrap_or(0)
-}
-
-/// x / 2^by to the nearest, ties upwards; by from 1 to 31.
-#[inline]
-fn rounded(x: i32, by: u32) -> i32 {
-    ((x >> (by - 1)) + 1) >> 1
 }
 
 /// e^x. The polynomial's own error is 8e-8 of the result.
