@@ -164,7 +164,7 @@ pub(super) fn normalised(x: u32) -> (u32, u32) {
 
 /// The same from the zeros of a byte, in a table.
 #[inline]
-fn normalised_by_bytes(mut x: u32) -> (u32, u32) {
+fn normalised_by_bytes(x: u32) -> (u32, u32) {
     const ZEROS: [u8; 256] = {
         let mut zeros = [8; 256];
         let mut byte = 1;
@@ -174,17 +174,14 @@ fn normalised_by_bytes(mut x: u32) -> (u32, u32) {
         }
         zeros
     };
-    let mut zeros = 0;
-    if x >> 16 == 0 {
-        x <<= 16;
-        zeros = 16;
-    }
-    if x >> 24 == 0 {
-        x <<= 8;
-        zeros += 8;
-    }
-    let last = u32::from(ZEROS[usize::from((x >> 24) as u8)]);
-    (x << (last & 31), zeros + last)
+    let of = |byte: u32| u32::from(ZEROS[usize::from(byte as u8)]);
+    let zeros = match x {
+        0x100_0000.. => of(x >> 24),
+        0x1_0000.. => of(x >> 16) + 8,
+        0x100.. => of(x >> 8) + 16,
+        _ => of(x) + 24,
+    };
+    (x << (zeros & 31), zeros)
 }
 
 /// p / 2^by, rounded down, for a result that fits; by from 1 to 63. Half of p at a time, for a shift of 64 bits would be a call.
