@@ -19,13 +19,14 @@ const HALF: i64 = 1 << (DIGITS - 1);
 /// | | error | instructions, Armv6-M |
 /// |---|---|---|
 /// | `+` `-` negation `abs` | none | 5 |
-/// | `*` | half a step | 30 |
-/// | `/` | half a step | 180 |
-/// | `sqrt` | half a step | 160 |
-/// | `dot`, `norm` of two | half a step | 100, 230 |
-/// | `exp` | one step, or 2.5e-7 of the result | 130 |
-/// | `sin_cos` | 7e-7, and 4e-10 of the angle | 230 |
-/// | `atan2` | 1.5e-6 | 510 |
+/// | `*` | half a step | 28 |
+/// | `/` | half a step | 120 |
+/// | `sqrt` | half a step | 95 |
+/// | `dot`, `norm` of two | half a step | 70, 140 |
+/// | `unit` of two or three | half a step and a fiftieth; of the length half a step and 1.5e-8 of it | 220, 260 |
+/// | `exp` | one step, or 2.5e-7 of the result | 95 |
+/// | `sin_cos` | 7e-7, and 4e-10 of the angle | 200 |
+/// | `polar`, `atan2` | 1.5e-6; of the length half a step and 4e-8 of it, as it is turned in 29 digits | 185 |
 /// | `from_f64` | half a step | none for a constant |
 ///
 /// ```

@@ -72,7 +72,7 @@ pub trait Scalar:
     /// Error, rad: 9e-16 (`f64`), 2e-7 (`f32`), 1.5e-6 ([`Fixed`]).
     fn atan2(self, x: Self) -> Self;
     /// Length and angle (as [`Scalar::atan2`]) of the point (x, y): for little more than the angle. Error of the length: 2e-16 (`f64`), 2e-7 (`f32`) of
-    /// it, one step ([`Fixed`]).
+    /// it, half a step and 4e-8 of it ([`Fixed`]).
     fn polar(x: Self, y: Self) -> (Self, Self);
     /// A bound on the rounding error of one product of terms of this size.
     fn rounding(size: Self) -> Self;
