@@ -29,8 +29,8 @@ impl<S: Scalar> SteeringPolicy<S> {
     }
 }
 
-/// Gamma_k over which `WithFlow` fades in, inside the shell.
-const BAND: f64 = 0.1;
+/// How fast `WithFlow` fades in inside the shell, over Gamma_k: within 0.1 of it.
+const FADING: f64 = 10.0;
 /// What the fixed side adds to the tangential flow, over |f|: enough to leave a saddle point.
 const SIDE: f64 = 0.01;
 /// Tangential flow, over |f|, from which the push has its full length.
@@ -143,7 +143,7 @@ fn with_flow<S: Scalar, const D: usize>(
 
 /// 0 at the shell, 1 from a thin band on inwards.
 fn fade<S: Scalar, const D: usize>(o: &SoftLayer<S, D>) -> S {
-    ((S::one() - o.gamma_soft) / S::from_f64(BAND)).min(S::one())
+    ((S::one() - o.gamma_soft) * S::from_f64(FADING)).min(S::one())
 }
 
 /// The direction of the flow in the tangent plane, shorter than one where there is hardly any.

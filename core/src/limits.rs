@@ -1,6 +1,6 @@
 //! What the robot may be asked for.
 
-use crate::{Scalar, Status, Vector, norm};
+use crate::{Scalar, Status, Vector, unit};
 
 /// Bounds on the commanded velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,8 +54,8 @@ fn shortened<S: Scalar, const D: usize>(v: Vector<S, D>, length: S) -> (Vector<S
     // Halved, so that the length of the largest vector fits; divided first, so that in fixed point the ratio keeps its digits.
     let half = S::from_f64(0.5);
     let halved = v * half;
-    let own = norm(&halved);
-    if own > length * half { (halved / own * length, true) } else { (v, false) }
+    let (own, unit) = unit(&halved);
+    if own > length * half { (unit * length, true) } else { (v, false) }
 }
 
 #[cfg(test)]

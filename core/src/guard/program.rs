@@ -7,7 +7,7 @@
 //! Where nothing is allowed, the least violation t is found by the same scheme: t equals the violation of the half-space i met
 //! last, so the others ask for (n_j - n_i).u >= b_j - b_i, and the best velocity is the farthest along n_i.
 
-use crate::{Matrix, RANGE, Scalar, Vector, norm};
+use crate::{Matrix, RANGE, Scalar, Vector, norm, unit};
 
 /// The velocities `{ u : normal.u >= offset }`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -214,11 +214,11 @@ impl<S: Scalar, const D: usize> Flat<S, D> {
     /// What rounding leaves of a small part need not lie along the flat, and a velocity moved that way would leave it: so the
     /// part is taken again, of the unit vector.
     fn direction(&self, part: &Vector<S, D>, least: S) -> Option<Vector<S, D>> {
-        let length = norm(part);
+        let (length, direction) = unit(part);
         if !(length > least) {
             return None;
         }
-        let unit = self.along * (part / length);
+        let unit = self.along * direction;
         let squared = unit.dot(&unit);
         let rounding = S::EPSILON * S::from_f64(4.0);
         if (squared - S::one()).abs() <= rounding {

@@ -11,7 +11,7 @@
 use core::array::from_fn;
 
 use crate::obstacle::Sample;
-use crate::{Scalar, Vector, norm};
+use crate::{Scalar, Vector, norm, unit};
 
 /// The velocity past one obstacle:
 ///
@@ -239,8 +239,7 @@ struct Seen<S, const D: usize> {
 impl<S: Scalar, const D: usize> DirectionalMean<S, D> {
     fn new(f: &Vector<S, D>) -> Self {
         let (zero, none) = (Vector::zeros(), S::zero());
-        let nominal = norm(f);
-        let forward = if nominal > none { f / nominal } else { zero };
+        let (nominal, forward) = unit(f);
         Self { nominal, forward, nearest: S::MAX, sum: none, speed: none, kappa: zero, plain: zero, fading: none }
     }
 

@@ -22,7 +22,7 @@ pub use spec::{MAX_RATIO, MAX_SPEED, MIN_AXIS, ObstacleError, ObstacleSpec};
 pub(crate) use sample::{Sample, SoftLayer};
 
 use crate::shape::{Body, Place, root};
-use crate::{Scalar, Vector, norm};
+use crate::{Scalar, Vector, norm, times, transposed_times};
 
 /// A checked obstacle, at its present pose and size.
 ///
@@ -157,7 +157,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         }
         // gamma is homogeneous of degree 2p: its gradient times u is 2p gamma.
         let length = S::from_f64(2.0 * f64::from(self.body.power())) * gamma / along;
-        let gradient = self.spec.rotation * (direction.component_mul(&self.hard) * length);
+        let gradient = times(&self.spec.rotation, &(direction.component_mul(&self.hard) * length));
         if self.spec.wall { -gradient / (gamma * gamma) } else { gradient }
     }
 
@@ -180,7 +180,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// The velocity of the obstacle's matter at x, m/s: v + w x (x - c), without growth.
     pub fn surface_velocity(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        self.spec.velocity + self.spec.spin * (x - self.spec.center)
+        self.spec.velocity + times(&self.spec.spin, &(x - self.spec.center))
     }
 
     /// The reference point in the world's frame, m: its own, or one that it shares with obstacles it overlaps.
@@ -195,14 +195,14 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             return self.keep_out_of_ellipsoid(from.at, keep);
         }
         let u = self.local(from.at).component_mul(&self.hard);
-        let wish = self.spec.rotation.tr_mul(from.wish).component_mul(&self.hard);
+        let wish = transposed_times(&self.spec.rotation, from.wish).component_mul(&self.hard);
         let Outlook { step, reach, share, .. } = *from;
         let place = Place { u, wish, inverse: &self.hard, wall: self.spec.wall, step, reach, share };
         self.body.keep_out(&self.spec.shape, &place, |normal, slack| {
             let length = norm(&normal);
             if length > S::zero() {
                 let inverse = S::one() / length;
-                keep(self.spec.rotation * (normal * inverse), slack * inverse);
+                keep(times(&self.spec.rotation, &(normal * inverse)), slack * inverse);
             }
         });
     }
@@ -221,7 +221,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let shortest = one / self.slimmest;
         let normal = t.zip_map(&self.hard, |t, inverse| t * (inverse * shortest));
         let inverse = one / norm(&normal);
-        keep(self.spec.rotation * (normal * inverse), size * (largest * size - one) * shortest * inverse);
+        keep(times(&self.spec.rotation, &(normal * inverse)), size * (largest * size - one) * shortest * inverse);
     }
 
     /// May the hard surface be within `reach` (m) of a point with this Gamma?
@@ -264,7 +264,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// q = Q' (x - c)
     #[inline(always)]
     fn local(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        self.spec.rotation.tr_mul(&(x - self.spec.center))
+        transposed_times(&self.spec.rotation, &(x - self.spec.center))
     }
 
     /// Gamma at these scaled coordinates, and the direction of gamma's gradient.
@@ -292,7 +292,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     }
 
     fn on_surface(&self, direction: &Vector<S, D>, inverse: &Vector<S, D>) -> Vector<S, D> {
-        let q = self.spec.rotation.tr_mul(direction);
+        let q = transposed_times(&self.spec.rotation, direction);
         let u = q.component_mul(inverse);
         let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
         if !(largest > S::zero()) {

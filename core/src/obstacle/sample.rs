@@ -1,7 +1,7 @@
 //! An obstacle as it looks from one point.
 
 use super::Obstacle;
-use crate::{Scalar, Vector, norm};
+use crate::{Scalar, Vector, times, unit};
 
 /// What the modulation wants to know of an obstacle.
 #[derive(Clone, Debug)]
@@ -39,12 +39,12 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     pub(crate) fn sample(&self, x: &Vector<S, D>) -> Sample<S, D> {
         let q = self.local(x);
         let (gamma, direction) = self.level(&q.component_mul(&self.hard));
-        let shape_normal = self.spec.rotation * direction.component_mul(&self.hard);
+        let shape_normal = times(&self.spec.rotation, &direction.component_mul(&self.hard));
         let mut surface_velocity = Vector::zeros();
         if self.moves {
             surface_velocity = self.surface_velocity(x);
             if self.swelling != S::zero() {
-                surface_velocity += unit(&shape_normal) * self.swelling;
+                surface_velocity += unit(&shape_normal).1 * self.swelling;
             }
         }
         let arm = x - self.spec.center - self.offset;
@@ -61,7 +61,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     #[inline(never)]
     pub(crate) fn soft_layer(&self, x: &Vector<S, D>, sample: Sample<S, D>) -> Option<SoftLayer<S, D>> {
         let gamma_soft = self.gamma_soft(x);
-        let normal = unit(&sample.outward);
+        let normal = unit(&sample.outward).1;
         (sample.gamma > S::one() && gamma_soft <= S::one()).then(|| SoftLayer {
             gamma_soft,
             normal: if self.spec.wall { -normal } else { normal },
@@ -70,9 +70,4 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             first_axis: self.spec.rotation.column(0).into_owned(),
         })
     }
-}
-
-fn unit<S: Scalar, const D: usize>(v: &Vector<S, D>) -> Vector<S, D> {
-    let length = norm(v);
-    if length > S::zero() { v / length } else { Vector::zeros() }
 }
