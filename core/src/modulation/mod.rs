@@ -152,7 +152,7 @@ impl<S: Scalar, const D: usize> Modulation<S, D> {
 
     /// How many obstacles the last group has.
     fn in_last(&self) -> usize {
-        if self.lane % LANES == 0 { LANES } else { self.lane }
+        if self.lane.is_multiple_of(LANES) { LANES } else { self.lane }
     }
 
     /// Takes those that wait into the mean.
@@ -160,10 +160,10 @@ impl<S: Scalar, const D: usize> Modulation<S, D> {
     fn flush(&mut self) {
         // Copies stay in registers.
         let (f, mut mean, mut unusable) = (self.f, self.mean, self.unusable);
-        let mut left = self.groups.len();
-        for group in &self.groups {
-            left -= 1;
-            let here = if left > 0 { LANES } else { self.in_last() };
+        // Counted, for where there is room for one a compiler then writes no loop.
+        for g in 0..GROUPS {
+            let Some(group) = self.groups.get(g) else { break };
+            let here = if g + 1 < self.groups.len() { LANES } else { self.in_last() };
             let (usable, velocity) = group.past(&f);
             let seen = mean.seen(&velocity);
             for i in 0..here {

@@ -168,7 +168,13 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     /// they go together, as status flags.
     pub fn advance(&mut self, dt: S, ageing: &Ageing<S>) -> Status {
         let mut status = self.scan.status(ageing) | self.clusters.status();
+        let fresh = ageing.time_to_live.min(ageing.hold);
         for entry in &mut self.entries {
+            if entry.age < fresh {
+                entry.obstacle.advance(dt);
+                entry.age += dt;
+                continue;
+            }
             // Beyond the hold time nothing changes, so the age may stop there too and never loses its last digit.
             if entry.age >= ageing.hold {
                 status |= Status::HELD;
