@@ -73,10 +73,10 @@ impl<S: Scalar> Guard<S> {
         table: &Table<S, D, CAP>,
         around: &Surroundings<S, D, CAP>,
     ) -> Solution<S, D> {
-        let seen =
-            self.solve(&View { x, at: x, step: speed * dt, approach: self.approach }, wanted, speed, dt, table, around);
-        // What cannot be left within two steps by the way that was seen cannot be left within one by another.
-        if seen.feasible || seen.violation > speed {
+        let here = View { x, at: x, step: speed * dt, approach: self.approach };
+        let (seen, fastest) = self.solve(&here, wanted, speed, dt, table, around);
+        // A core that cannot be left in time alone cannot be left along with others.
+        if seen.feasible || fastest > speed {
             return seen;
         }
         // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
@@ -84,7 +84,7 @@ impl<S: Scalar> Guard<S> {
         for _ in 0..LOOKS {
             let at = x + best.velocity * dt;
             let again = View { x, at: &at, step: speed * dt * S::from_f64(2.0), approach: S::one() };
-            let found = self.solve(&again, wanted, speed, dt, table, around);
+            let (found, _) = self.solve(&again, wanted, speed, dt, table, around);
             if found.feasible {
                 return found;
             }
@@ -93,7 +93,7 @@ impl<S: Scalar> Guard<S> {
         seen
     }
 
-    /// The same by the half-spaces that are seen from one place.
+    /// The same by the half-spaces that are seen from one place, and the speed that the worst of them asks for.
     fn solve<const D: usize, const CAP: usize>(
         &self,
         view: &View<'_, S, D>,
@@ -102,7 +102,7 @@ impl<S: Scalar> Guard<S> {
         dt: S,
         table: &Table<S, D, CAP>,
         around: &Surroundings<S, D, CAP>,
-    ) -> Solution<S, D> {
+    ) -> (Solution<S, D>, S) {
         let skin = skin(view.x);
         let rate = S::one() / dt;
         let gone = view.at - view.x;
@@ -147,11 +147,13 @@ struct View<'a, S: Scalar, const D: usize> {
 struct HalfSpaces<S: Scalar, const D: usize> {
     all: heapless::Vec<HalfSpace<S, D>, CAPACITY>,
     speed: S,
+    /// The largest offset, m/s.
+    fastest: S,
 }
 
 impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
     fn new(speed: S) -> Self {
-        Self { all: heapless::Vec::new(), speed }
+        Self { all: heapless::Vec::new(), speed, fastest: S::zero() }
     }
 
     /// Puts one in; where there is no room, in the place of the loosest, which no velocity slower than its offset violates.
@@ -159,6 +161,7 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
         if !(new.offset > -self.speed) {
             return;
         }
+        self.fastest = self.fastest.max(new.offset);
         let Err(mut new) = self.all.push(new) else { return };
         if let Some(loosest) =
             self.all.iter_mut().min_by(|a, b| a.offset.partial_cmp(&b.offset).unwrap_or(Ordering::Equal))
@@ -169,9 +172,9 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
         self.speed = -new.offset;
     }
 
-    fn solve(mut self, wanted: &Vector<S, D>) -> Solution<S, D> {
+    fn solve(&mut self, wanted: &Vector<S, D>) -> (Solution<S, D>, S) {
         let solution = nearest(wanted, &mut self.all, self.speed);
-        Solution { feasible: solution.feasible && self.speed >= S::zero(), ..solution }
+        (Solution { feasible: solution.feasible && self.speed >= S::zero(), ..solution }, self.fastest)
     }
 }
 
