@@ -306,7 +306,7 @@ impl<'a> Panel<'a> {
             match (here, t.points.last()) {
                 (Some(here), _) => {
                     svg.circle(pixel(&here.position), 3.6, DOT);
-                    labels.keep_free(pixel(&here.position), 4.0);
+                    labels.keep_free(pixel(&here.position), 6.0);
                 }
                 (None, Some(end)) if self.has_aim() => svg.circle(pixel(&end.position), 3.0, ARRIVED),
                 _ => {}
