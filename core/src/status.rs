@@ -34,7 +34,7 @@ bitflags! {
         const LATE = 1 << 5;
         /// The arithmetic left the range of numbers: the command is zero. No input is known to do this.
         const NOT_FINITE = 1 << 6;
-        /// Hard cores overlap in a ring: they have no reference point in common, and the flow may end between them.
+        /// Hard cores overlap without a common reference point: the flow may end in a pocket between two of them.
         const CLUSTER = 1 << 7;
         /// The guard changed the command, for the next sample would have been in a hard core.
         const GUARDED = 1 << 8;
