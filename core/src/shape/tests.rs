@@ -1,4 +1,5 @@
 use super::*;
+use crate::obstacle::Outlook;
 use crate::obstacle::{Obstacle, ObstacleSpec};
 use crate::{Matrix, rotation};
 use proptest::prelude::*;
@@ -89,7 +90,9 @@ fn kept_out<const D: usize>(
     steps: &[[f64; D]],
 ) -> Result<usize, TestCaseError> {
     let mut planes: heapless::Vec<(Vector<f64, D>, f64), 64> = heapless::Vec::new();
-    o.keep_out(x, &(Vector::from(steps[0]) * step), step, 2.0 * step, |n, gap| planes.push((n, gap)).unwrap());
+    let wish = Vector::from(steps[0]) * step;
+    let from = Outlook { at: x, wish: &wish, step, reach: 2.0 * step, share: 1.0 };
+    o.keep_out(&from, |n, gap| planes.push((n, gap)).unwrap());
     for (n, _) in &planes {
         prop_assert!((n.norm() - 1.0).abs() < 1e-9);
     }
@@ -221,7 +224,8 @@ fn the_centre_of_a_body_has_a_way_out() {
     for shape in [Shape::ellipsoid(V2::new(0.1, 0.2)), Shape::Box { half: V2::new(0.1, 0.2), rounding: 0.05 }] {
         let o = Obstacle::new(ObstacleSpec { shape, rotation: Matrix::identity(), ..ObstacleSpec::default() }).unwrap();
         let mut found = None;
-        o.keep_out(&V2::zeros(), &V2::zeros(), 1e-3, 1e-3, |n, gap| found = Some((n, gap)));
+        let from = Outlook { at: &V2::zeros(), wish: &V2::zeros(), step: 1e-3, reach: 1e-3, share: 1.0 };
+        o.keep_out(&from, |n, gap| found = Some((n, gap)));
         let (n, gap) = found.unwrap();
         assert_eq!(n, V2::x());
         assert!((gap + 0.1).abs() < 1e-12);

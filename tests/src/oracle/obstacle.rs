@@ -202,6 +202,11 @@ impl Body {
         self.rotation[(1, 0)].atan2(self.rotation[(0, 0)])
     }
 
+    /// A vector of the obstacle's frame in the world's; of a longer one what there is room for.
+    pub(super) fn in_world(&self, own: &[f64]) -> DVector<f64> {
+        &self.rotation * DVector::from_fn(self.rotation.nrows(), |i, _| own[i])
+    }
+
     /// v + w x (x - c) + b n.
     pub(super) fn surface_velocity(&self, x: &DVector<f64>) -> DVector<f64> {
         let arm = x - &self.center;

@@ -10,7 +10,7 @@ use super::geometry::{length, rotation_matrix, turned_about_z};
 use super::random_scene::{PointKind, RandomScene, Recipe, generate, generate_from};
 use super::{
     Evaluation, ObstacleView, OracleLimits, OracleMethod, OracleMotion, OracleObstacle, OracleRotation, OracleScene,
-    OracleShape, OracleSpin, OracleSteering, evaluate,
+    OracleShape, OracleSpin, OracleSteering, evaluate, reference_in_world,
 };
 
 fn norm(v: &[f64]) -> f64 {
