@@ -34,7 +34,7 @@ bitflags! {
         const LATE = 1 << 5;
         /// The arithmetic left the range of numbers, which no input is known to do, or the time step was negative or no number: the command is zero.
         const NOT_FINITE = 1 << 6;
-        /// Hard cores overlap in a ring: they have no reference point in common, and the flow may end between them.
+        /// Hard cores overlap without a common reference point: the flow may end in a pocket between two of them.
         const CLUSTER = 1 << 7;
         /// The guard changed the command, for by the next sample it would have come nearer to a hard core than it may.
         const GUARDED = 1 << 8;

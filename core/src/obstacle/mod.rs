@@ -10,6 +10,7 @@
 //! Gamma_k is eq. 13 of Chen et al., with ln k + 1 = rho. A wall has 1/gamma, and both its surfaces come inwards: L_i/eta_i, L_i/rho_i.
 
 mod motion;
+mod reference;
 mod sample;
 mod spec;
 
@@ -65,8 +66,9 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     inner: S,
     body: Body<S, D>,
     spec: ObstacleSpec<S, D>,
-    /// The reference point in the obstacle's frame: its own, or one shared with obstacles it overlaps.
+    /// The reference point in the obstacle's frame, its own or one shared with obstacles it overlaps; and u = q * this when it was chosen.
     local_reference: Vector<S, D>,
+    chosen_at: Vector<S, D>,
     /// How much each semi-extent has grown, m.
     grown: S,
     /// How much ageing has added, m, and adds, m/s.
@@ -96,10 +98,9 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     pub fn new(spec: ObstacleSpec<S, D>) -> Result<Self, ObstacleError> {
         spec.check()?;
         let (body, unit) = spec.shape.body();
-        if !body.sees_all(&spec.shape, &spec.reference.component_div(&unit)) {
+        if !(body.sight(&spec.shape, &spec.reference.component_div(&unit)).0 < S::one()) {
             return Err(ObstacleError::Reference);
         }
-        let local_reference = spec.reference;
         let extent = spec.shape.growing_extent();
         let nothing = Vector::zeros();
         let mut obstacle = Self {
@@ -121,14 +122,15 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             inner: S::one() / body.inner(&spec.shape),
             body,
             spec,
-            local_reference,
+            local_reference: nothing,
+            chosen_at: nothing,
             grown: S::zero(),
             aged: S::zero(),
             ageing: S::zero(),
         };
         obstacle.rescale();
         obstacle.set_speeds();
-        obstacle.place_reference();
+        obstacle.share_reference(None);
         Ok(obstacle)
     }
 
@@ -181,11 +183,6 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// The velocity of the obstacle's matter at x, m/s: v + w x (x - c), without growth.
     pub fn surface_velocity(&self, x: &Vector<S, D>) -> Vector<S, D> {
         self.spec.velocity + times(&self.spec.spin, &(x - self.spec.center))
-    }
-
-    /// The reference point in the world's frame, m: its own, or one that it shares with obstacles it overlaps.
-    pub fn reference(&self) -> Vector<S, D> {
-        self.spec.center + self.offset
     }
 
     /// Calls `keep(n, gap)` for half-spaces n.delta >= -gap (n of unit length, world's frame; gap in m) of displacements from a place that keep

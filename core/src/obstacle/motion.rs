@@ -60,16 +60,6 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.set_speeds();
     }
 
-    /// Takes a reference point (world's frame, m) in common with others, or its own again.
-    pub(crate) fn share_reference(&mut self, shared: Option<&Vector<S, D>>) {
-        self.local_reference = shared.map_or(self.spec.reference, |x| self.local(x));
-        self.place_reference();
-    }
-
-    pub(super) fn place_reference(&mut self) {
-        self.offset = self.spec.rotation * self.local_reference;
-    }
-
     /// All that follows from the size.
     pub(super) fn rescale(&mut self) {
         let (one, zero) = (S::one(), S::zero());
@@ -100,6 +90,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             one / if wall { (l - aged * more).max(l * S::from_f64(0.1)) } else { l + aged * more }
         });
         self.slimmest = self.hard.iter().fold(S::zero(), |m, x| m.max(*x)) * self.inner;
+        self.place_reference();
     }
 
     /// How the surface moves, and whether anything does.

@@ -218,11 +218,12 @@ impl<S: Scalar, const D: usize> Body<S, D> {
         }
     }
 
-    /// Is the whole surface seen from this point of the shape's scaled coordinates?
-    pub fn sees_all(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> bool {
+    /// At most 1 where the whole surface is seen from, so that a reference point may be there: gamma, but of a polygon. And the direction in which
+    /// it grows.
+    pub fn sight(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> (S, Vector<S, D>) {
         match (self, shape) {
-            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).sees_all(u),
-            _ => self.level(shape, u).0 < S::one(),
+            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).sight(u),
+            _ => self.level(shape, u),
         }
     }
 

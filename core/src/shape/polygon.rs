@@ -7,11 +7,16 @@ use crate::{ObstacleError, RANGE, Scalar, Vector};
 pub const MAX_VERTICES: usize = 12;
 /// The share of an edge, at each end, over which the normal turns towards that of the neighbour.
 const BLEND: f64 = 0.2;
+/// By how much of the neighbour's gauge along that share it may fall at most: the further the neighbour turns away, the shorter the share.
+const FALL: f64 = 0.8;
+/// A reference point is behind every edge's line by at least a fifth of the origin's distance from it. FALL/8, what the blend may take of that, is less.
+const SIGHT: f64 = 0.8;
 
 /// A polygon, star-shaped about the origin: [`Polygon::new`] checks the number of corners, an obstacle the rest.
 ///
 /// Between two corners v and w a point is u = alpha v + beta w, and its gauge is alpha + beta. The gradient of the gauge is the edge's normal
-/// (scaled), which would jump at a corner; near one it is blended with that of the next edge, so that the velocity is continuous.
+/// (scaled), which would jump at a corner; near one it is blended with that of the next edge, so that the velocity is continuous. Where that edge
+/// turns away steeply it is so only very near, for the normal must lead away from every reference point there may be.
 ///
 /// ```
 /// use pliant_core::{Obstacle, ObstacleSpec, Vector, shape::{Polygon, Shape}};
@@ -39,6 +44,14 @@ impl<S: Scalar> Edge<S> {
         // |normal| = 1/distance of the edge's line.
         let normal = [along[1] / double_area, -along[0] / double_area];
         (double_area > S::zero()).then_some(Self { from, to, normal })
+    }
+
+    /// Its share in the normal of a neighbour, at this share of that one's length from the corner between them; `opposite` is the neighbour's
+    /// other corner. A half at the corner, fading over a band.
+    fn share(&self, away: S, opposite: [S; 2]) -> S {
+        let (band, fall) = (S::from_f64(BLEND), S::one() - dot(self.normal, opposite));
+        let band = if fall * band > S::from_f64(FALL) { S::from_f64(FALL) / fall } else { band };
+        ((band - away) / band).max(S::zero()).min(S::one()) * S::from_f64(0.5)
     }
 }
 
@@ -99,9 +112,15 @@ impl<S: Scalar> Scaled<'_, S> {
         self.scale
     }
 
-    /// Is this point on the inner side of every edge's line, so that it sees the whole polygon?
-    pub fn sees_all<const D: usize>(&self, r: &Vector<S, D>) -> bool {
-        self.edges().all(|e| dot(e.normal, plane(r)) < S::one())
+    /// At most 1 where the whole polygon is seen from, with some to spare: a convex function like gamma, and never below it. And where it grows to.
+    pub fn sight<const D: usize>(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
+        let u = plane(u);
+        let (most, steepest) = self.edges().fold((S::zero(), [S::zero(); 2]), |(most, steepest), edge| {
+            let here = dot(edge.normal, u);
+            if here > most { (here, edge.normal) } else { (most, steepest) }
+        });
+        let share = most / S::from_f64(SIGHT);
+        (share * share, vector(steepest))
     }
 
     /// The distance of the nearest edge's line from the origin.
@@ -158,21 +177,20 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
         let Some((end, edge)) = self.leaving(u).and_then(|end| Some((end, self.ending(end)?))) else {
             return (S::zero(), Vector::zeros());
         };
-        let (half, band) = (S::from_f64(0.5), S::from_f64(BLEND));
         let gauge = dot(edge.normal, u);
         let beta = cross(edge.from, u) / cross(edge.from, edge.to);
-        // Where on the edge, 0 to 1; the neighbour's share is a half at the corner and fades over the band.
+        // Where on the edge, 0 to 1.
         let along = beta / gauge;
-        let share = |t: S| ((band - t) / band).max(S::zero()).min(S::one()) * half;
-        let (first, last) = (share(along), share(S::one() - along));
-        let own = S::one() - first - last;
-        let mut normal = [edge.normal[0] * own, edge.normal[1] * own];
-        // Far from both corners no neighbour counts.
-        for (share, neighbour) in [(first, self.before(end)), (last, self.after(end))] {
-            if share > S::zero()
+        let corners = [(along, self.before(end), edge.to), (S::one() - along, self.after(end), edge.from)];
+        let mut normal = edge.normal;
+        for (away, neighbour, opposite) in corners {
+            // Far from both corners no neighbour counts.
+            if away < S::from_f64(BLEND)
                 && let Some(neighbour) = self.ending(neighbour)
             {
-                normal = [normal[0] + neighbour.normal[0] * share, normal[1] + neighbour.normal[1] * share];
+                let share = neighbour.share(away, opposite);
+                let own = S::one() - share;
+                normal = [0, 1].map(|i| normal[i] * own + neighbour.normal[i] * share);
             }
         }
         (gauge * gauge, vector(normal))
