@@ -218,7 +218,11 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
             }
             return;
         }
-        let edges: heapless::Vec<Edge<S>, MAX_VERTICES> = self.edges().collect();
+        let mut edges: heapless::Vec<Edge<S>, MAX_VERTICES> = heapless::Vec::new();
+        for edge in self.edges() {
+            // Cannot be full, and `collect` would panic if it were.
+            let _ = edges.push(edge);
+        }
         let mut before = edges.last();
         let notch = edges.iter().position(|edge| before.replace(edge).is_some_and(|before| is_notch(before, edge)));
         let Some((rest, first)) = notch.and_then(|notch| edges.split_at_checked(notch)) else {

@@ -12,7 +12,7 @@ use super::geometry::{length, vector};
 use super::obstacle::Body;
 use super::scene::OracleScene;
 pub use overlap::Sharing;
-pub(super) use overlap::{common, in_sight, sight_and_core, through};
+pub(super) use overlap::{common, in_sight, through};
 
 /// Obstacles whose cores overlap, directly or through others.
 #[derive(Debug, Clone, PartialEq)]

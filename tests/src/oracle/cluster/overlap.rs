@@ -68,12 +68,12 @@ fn sight(body: &Body) -> Vec<Piece<'_>> {
 
 /// Whether the cores of some obstacles, none of them a wall, have a point in common.
 pub(in super::super) fn common(bodies: &[&Body]) -> Sharing {
-    together(bodies, |body| parts(body))
+    together(bodies, parts)
 }
 
 /// Whether they have one where each may have its reference point.
 pub(in super::super) fn in_sight(bodies: &[&Body]) -> Sharing {
-    together(bodies, |body| sight(body))
+    together(bodies, sight)
 }
 
 /// Whether a parent's core reaches where a child, which is no wall, may have its reference point.
