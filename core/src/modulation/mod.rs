@@ -59,12 +59,13 @@ struct Group<S, const D: usize> {
 }
 
 impl<S: Scalar, const D: usize> Group<S, D> {
-    /// One obstacle in every lane.
+    /// One obstacle, in the first lane.
     #[inline(always)]
     fn new(sample: &Sample<S, D>) -> Self {
-        let each = |v: &Vector<S, D>| from_fn(|d| [v[d]; LANES]);
+        let first = |x: S| from_fn(|lane| if lane == 0 { x } else { S::zero() });
+        let each = |v: &Vector<S, D>| from_fn(|d| first(v[d]));
         Self {
-            gamma: [sample.gamma; LANES],
+            gamma: first(sample.gamma),
             outward: each(&sample.outward),
             arm: each(&sample.arm),
             surface_velocity: each(&sample.surface_velocity),
