@@ -32,7 +32,8 @@ Usage: cargo xtask <task>
 Tasks:
   test                    set up, then run every check and every test; what CI runs
   setup                   install what the project needs and this machine lacks
-  campaign [--samples N]  the core's property campaigns, N samples each (10^8 by default; hours)
+  campaign [NAME ...] [--samples N]
+                          the core's property campaigns, or those named, N samples for each scalar type (10^8 by default; hours)
   no-panic                show that the tick cannot panic, on either core
   size [--json]           text, data, bss and stack of the firmware
   fuzz [--seconds N]      run every fuzz target, N seconds each (600 by default)
