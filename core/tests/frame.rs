@@ -164,6 +164,8 @@ fn frame<S: Scalar, const D: usize>(seed: u64) {
         // magnifies rounding more than any bound that three neighbours show. Where it did, the flows are two, each as good: nothing to compare.
         worlds += 1;
         let apart = farthest(&here, &there, |x| q * x + t);
+        // The conditioning is that of the world in f64, so the references must be its own.
+        let apart = apart.max(farthest(&here, &exact, |x| *x));
         let near_apart = near.iter().map(|c| farthest(&exact, c, |x| *x)).fold(0.0, f64::max);
         if apart.max(near_apart) > UNITS * eps {
             elsewhere += 1;
@@ -188,8 +190,9 @@ fn frame<S: Scalar, const D: usize>(seed: u64) {
                 near.iter().map(|c| (c.evaluate(&RobotState::new(x).unwrap()).adapted - truth.adapted).norm());
             let sensitivity = sensitivity.fold(0.0, f64::max);
             let error = (q * numbers(&a.adapted) - numbers(&b.adapted)).norm();
-            // Below one Gamma itself has few digits where numbers have a fixed point.
-            let digits = eps + S::rounding(S::zero()).to_f64() / truth.gamma.min(1.0);
+            // Where numbers have a fixed point what is small has few digits: Gamma below one, and on the way to a normal the radius of an edge, which
+            // is 0.15 of a side that is 0.3 of the longest.
+            let digits = eps + S::rounding(S::zero()).to_f64() / (0.045 * truth.gamma.min(1.0));
             let bound = UNITS * (sensitivity + digits * (1.0 + truth.adapted.norm()));
             worst = worst.max(error / bound);
             assert!(error <= bound, "{error:e} over {bound:e}: {a:?} {b:?} {truth:?} at {x} of {here:?}");
