@@ -6,7 +6,7 @@ mod world;
 use pliant_core::scalar::Fixed;
 use pliant_core::table::Entry;
 use pliant_core::{Motion, Obstacle, RobotState, Scalar, Stages};
-use rand::{Rng, seq::SliceRandom};
+use rand::seq::SliceRandom;
 use world::scene::{MOVING, PLACES, named, place, some, with_flow};
 use world::{is_long, motion, numbers, random, share};
 
