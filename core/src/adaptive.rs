@@ -29,8 +29,8 @@ impl<S: Scalar> SteeringPolicy<S> {
     }
 }
 
-/// Gamma_k over which `WithFlow` fades in, inside the shell.
-const BAND: f64 = 0.1;
+/// How fast `WithFlow` fades in inside the shell, over Gamma_k: within 0.1 of it.
+const FADING: f64 = 10.0;
 /// What the fixed side adds to the tangential flow, over |f|: enough to leave a saddle point.
 const SIDE: f64 = 0.01;
 /// Tangential flow, over |f|, from which the push has its full length.
@@ -143,23 +143,23 @@ fn with_flow<S: Scalar, const D: usize>(
 
 /// 0 at the shell, 1 from a thin band on inwards.
 fn fade<S: Scalar, const D: usize>(o: &SoftLayer<S, D>) -> S {
-    ((S::one() - o.gamma_soft) / S::from_f64(BAND)).min(S::one())
+    ((S::one() - o.gamma_soft) * S::from_f64(FADING)).min(S::one())
 }
 
 /// The direction of the flow in the tangent plane, shorter than one where there is hardly any.
 fn along_flow<S: Scalar, const D: usize>(u: &Vector<S, D>, nominal: S, o: &SoftLayer<S, D>) -> Vector<S, D> {
-    let t = u - o.normal * u.dot(&o.normal) + side(&o.normal) * (S::from_f64(SIDE) * nominal);
+    let t = u - o.normal * u.dot(&o.normal) + side(o) * (S::from_f64(SIDE) * nominal);
     t / norm(&t).max(S::from_f64(FULL) * nominal)
 }
 
-/// A fixed tangent: the normal turned by +90 degrees in 2-D; in 3-D a x n for an axis along which robots seldom approach.
-fn side<S: Scalar, const D: usize>(n: &Vector<S, D>) -> Vector<S, D> {
+/// A fixed tangent: the normal turned by +90 degrees in 2-D; in 3-D a x n for an axis a that turns with the obstacle.
+fn side<S: Scalar, const D: usize>(o: &SoftLayer<S, D>) -> Vector<S, D> {
+    let (a, n) = (&o.leaning, &o.normal);
     let mut t = Vector::<S, D>::zeros();
     if D == 2 {
         (t[0], t[1]) = (-n[1], n[0]);
     } else {
-        let (one, two) = (S::from_f64(1.0 / 3.0), S::from_f64(2.0 / 3.0));
-        (t[0], t[1], t[2]) = (two * n[2] - two * n[1], two * n[0] - one * n[2], one * n[1] - two * n[0]);
+        (t[0], t[1], t[2]) = (a[1] * n[2] - a[2] * n[1], a[2] * n[0] - a[0] * n[2], a[0] * n[1] - a[1] * n[0]);
     }
     t
 }

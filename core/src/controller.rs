@@ -67,7 +67,7 @@ impl<S: Scalar> Settings<S> {
         let from_zero = |x: S, high: f64| x >= S::zero() && x <= S::from_f64(high);
         let above_zero = |x: S, high: f64| x > S::zero() && x <= S::from_f64(high);
         let steering = match self.steering {
-            SteeringPolicy::Fixed { cos, sin } => cos.is_finite() && sin.is_finite(),
+            SteeringPolicy::Fixed { cos, sin } => (cos * cos + sin * sin - S::one()).abs() <= S::from_f64(1e-3),
             SteeringPolicy::WithFlow { beta } => from_zero(beta, 10.0),
         };
         let Ageing { time_to_live, growth, hold } = self.ageing;
@@ -152,9 +152,10 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         Self { motion: Moving::new(motion), settings, table: Table::new(), previous: Vector::zeros() }
     }
 
-    /// One step of `dt` seconds: the velocity to drive with from now on, and time passes for obstacles and attractor.
+    /// One step of `dt` seconds (not negative): the velocity to drive with from now on, and time passes for obstacles and attractor.
     pub fn tick(&mut self, state: &RobotState<S, D>, dt: S) -> Command<S, D> {
         let x = state.position();
+        let (dt, valid) = time_step(dt);
         let guard = self.settings.guard.filter(|_| dt > S::zero());
         let reach = guard.map(|guard| (guard.reach(x, self.settings.limits.speed, dt), dt));
         let (relative, nominal) = self.nominal(x);
@@ -163,7 +164,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         let stages = self.stages(&relative, nominal, &around);
         let (mut velocity, limited) = self.settings.limits.apply(stages.adapted, &self.previous, dt);
         let mut status = stages.status | limited | self.pass(dt);
-        if !velocity.iter().all(|v| v.is_finite()) {
+        if !(valid && velocity.iter().all(|v| v.is_finite())) {
             velocity = Vector::zeros();
             status |= Status::NOT_FINITE;
         }
@@ -182,15 +183,17 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
     pub fn tick_late(&mut self, last: &RobotState<S, D>, dt: S) -> Command<S, D> {
         let mut around = Surroundings::new(&Vector::zeros());
         self.table.look(last.position(), self.settings.deformable, None, &mut around);
+        let (dt, valid) = time_step(dt);
         let velocity = self.settings.limits.ramp_down(&self.previous, dt);
-        let status = Status::LATE | self.pass(dt);
+        let mut status = Status::LATE | self.pass(dt);
+        status.set(Status::NOT_FINITE, !valid);
         self.previous = velocity;
         Command { velocity, gamma: around.gamma, nearest: around.nearest, region: region(&around), status }
     }
 
     /// Time passes without a command: obstacles and attractor move on and age.
     pub fn wait(&mut self, dt: S) {
-        self.pass(dt);
+        self.pass(time_step(dt).0);
         self.previous = Vector::zeros();
     }
 
@@ -292,6 +295,12 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         self.motion.advance(dt);
         self.table.advance(dt, &self.settings.ageing)
     }
+}
+
+/// The time step, and whether it is one; in the place of what is none, no time.
+fn time_step<S: Scalar>(dt: S) -> (S, bool) {
+    let valid = dt >= S::zero() && dt.is_finite();
+    (if valid { dt } else { S::zero() }, valid)
 }
 
 fn region<S: Scalar, const D: usize, const CAP: usize>(around: &Surroundings<S, D, CAP>) -> Region {

@@ -54,3 +54,28 @@ pub(crate) fn is_zero<S: Scalar, const R: usize, const C: usize>(m: &nalgebra::S
 pub(crate) fn norm<S: Scalar, const D: usize>(v: &Vector<S, D>) -> S {
     S::norm(v.as_slice())
 }
+
+/// m v by scalar products, which fixed point rounds once; the order of sums is nalgebra's.
+#[inline(always)]
+pub(crate) fn times<S: Scalar, const D: usize>(m: &Matrix<S, D>, v: &Vector<S, D>) -> Vector<S, D> {
+    Vector::from_fn(|i, _| {
+        let row: [S; D] = core::array::from_fn(|j| m[(i, j)]);
+        S::dot(&row, v.as_slice())
+    })
+}
+
+/// m' v, likewise.
+#[inline(always)]
+pub(crate) fn transposed_times<S: Scalar, const D: usize>(m: &Matrix<S, D>, v: &Vector<S, D>) -> Vector<S, D> {
+    Vector::from_fn(|j, _| {
+        let column: [S; D] = core::array::from_fn(|i| m[(i, j)]);
+        S::dot(&column, v.as_slice())
+    })
+}
+
+/// The length of v, and v/|v|, or zero.
+#[inline(always)]
+pub(crate) fn unit<S: Scalar, const D: usize>(v: &Vector<S, D>) -> (S, Vector<S, D>) {
+    let (length, unit) = S::unit(v.data.0[0]);
+    (length, unit.into())
+}

@@ -1,6 +1,6 @@
 //! What the robot may be asked for.
 
-use crate::{Scalar, Status, Vector, norm};
+use crate::{Scalar, Status, Vector, unit};
 
 /// Bounds on the commanded velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,12 +38,14 @@ impl<S: Scalar> Limits<S> {
             return (velocity, status);
         }
         status |= Status::ACCELERATION_LIMITED;
-        (previous + change, status)
+        // Only where the limit has been lowered since: then it counts for more.
+        (shortened(previous + change, self.speed).0, status)
     }
 
     /// The velocity one step of `dt` seconds nearer to standing still.
     pub fn ramp_down<const D: usize>(&self, previous: &Vector<S, D>, dt: S) -> Vector<S, D> {
-        previous - shortened(*previous, self.deceleration * dt).0
+        let previous = shortened(*previous, self.speed).0;
+        previous - shortened(previous, self.deceleration * dt).0
     }
 }
 
@@ -52,8 +54,8 @@ fn shortened<S: Scalar, const D: usize>(v: Vector<S, D>, length: S) -> (Vector<S
     // Halved, so that the length of the largest vector fits; divided first, so that in fixed point the ratio keeps its digits.
     let half = S::from_f64(0.5);
     let halved = v * half;
-    let own = norm(&halved);
-    if own > length * half { (halved / own * length, true) } else { (v, false) }
+    let (own, unit) = unit(&halved);
+    if own > length * half { (unit * length, true) } else { (v, false) }
 }
 
 #[cfg(test)]
@@ -67,6 +69,15 @@ mod tests {
         let (v, status) = limits.apply(Vector::<f64, 2>::new(3.0, 4.0), &still, 0.001);
         assert!((v - Vector::<f64, 2>::new(0.006, 0.008)).norm() < 1e-15);
         assert_eq!(status, Status::SPEED_LIMITED | Status::ACCELERATION_LIMITED);
+    }
+
+    #[test]
+    fn a_lowered_limit_holds_at_once() {
+        let limits = Limits { speed: 0.1, acceleration: Some(5.0), deceleration: 2.0 };
+        let before = Vector::<f64, 2>::new(1.2, -1.6);
+        for (v, _) in [limits.apply(before, &before, 0.001), (limits.ramp_down(&before, 0.001), Status::empty())] {
+            assert!(v.norm() <= 0.1 + 1e-15, "{v}");
+        }
     }
 
     #[test]

@@ -9,6 +9,39 @@ const STEPS: u8 = 48;
 /// Halvings of the interval in which two ellipsoids have their common point.
 const HALVINGS: u8 = 26;
 
+/// What a point that is searched for has to be inside of.
+#[derive(Clone, Copy)]
+pub(crate) enum Inside<'a, S: Scalar, const D: usize> {
+    /// An obstacle's hard core.
+    Core(&'a Obstacle<S, D>),
+    /// Where an obstacle's reference point may be: of a polygon, where all of it is seen from.
+    Sight(&'a Obstacle<S, D>),
+}
+
+impl<S: Scalar, const D: usize> Inside<'_, S, D> {
+    /// Below one inside.
+    fn level(&self, x: &Vector<S, D>) -> S {
+        match self {
+            Self::Core(o) => o.gamma(x),
+            Self::Sight(o) => o.sight(x),
+        }
+    }
+
+    /// Where that grows.
+    fn slope(&self, x: &Vector<S, D>) -> Vector<S, D> {
+        match self {
+            Self::Core(o) => o.gradient(x),
+            Self::Sight(o) => o.sight_slope(x),
+        }
+    }
+
+    fn outer(&self) -> S {
+        match self {
+            Self::Core(o) | Self::Sight(o) => o.outer(),
+        }
+    }
+}
+
 /// A point well inside both hard cores, m; `None` if they do not overlap.
 pub(crate) fn between<S: Scalar, const D: usize>(a: &Obstacle<S, D>, b: &Obstacle<S, D>) -> Option<Vector<S, D>> {
     let (ca, cb) = (&a.spec().center, &b.spec().center);
@@ -25,38 +58,33 @@ pub(crate) fn between<S: Scalar, const D: usize>(a: &Obstacle<S, D>, b: &Obstacl
         _ if b.spec().wall => beyond_wall(b, a),
         _ => {
             let start = on_the_way(a, cb, b);
-            return common(&[a, b], &start);
+            return common(&[Inside::Core(a), Inside::Core(b)], &start);
         }
     };
-    if is_inside(&[a, b], &point) {
+    let both = [Inside::Core(a), Inside::Core(b)];
+    if both.iter().all(|o| o.level(&point) < S::one()) {
         return Some(point);
     }
     // What sticks into a wall need not do so along the wall's normal.
-    if walls { common(&[a, b], &point) } else { None }
+    if walls { common(&both, &point) } else { None }
 }
 
-/// A point inside all of these hard cores, m, searched from `start` by bounded steps: each away from the core it is least inside of, along
-/// that core's Gamma. `None` if none was found.
+/// A point inside all of these, m, searched from `start` by bounded steps: each away from the one it is least inside of, along
+/// that one's Gamma. `None` if none was found.
 pub(crate) fn common<S: Scalar, const D: usize>(
-    members: &[&Obstacle<S, D>],
+    members: &[Inside<'_, S, D>],
     start: &Vector<S, D>,
 ) -> Option<Vector<S, D>> {
     let mut x = *start;
     let mut best: Option<(S, Vector<S, D>)> = None;
     let mut step = members.iter().fold(S::MAX, |m, o| m.min(o.outer()));
     for _ in 0..STEPS {
-        let worst =
-            members.iter().map(|o| (o.gamma(&x), *o)).fold(None, |worst: Option<(S, &Obstacle<S, D>)>, (g, o)| {
-                match worst {
-                    Some((most, _)) if most >= g => worst,
-                    _ => Some((g, o)),
-                }
-            });
+        let worst = members.iter().map(|o| (o.level(&x), o)).reduce(|worst, o| if o.0 > worst.0 { o } else { worst });
         let (gamma, obstacle) = worst?;
         if best.as_ref().is_none_or(|(least, _)| gamma < *least) {
             best = Some((gamma, x));
         }
-        let slope = obstacle.gradient(&x);
+        let slope = obstacle.slope(&x);
         let length = norm(&slope);
         if !(length > S::zero()) {
             break;
@@ -66,10 +94,6 @@ pub(crate) fn common<S: Scalar, const D: usize>(
         step *= S::from_f64(0.9);
     }
     best.filter(|(gamma, _)| *gamma < S::one()).map(|(_, x)| x)
-}
-
-fn is_inside<S: Scalar, const D: usize>(members: &[&Obstacle<S, D>], x: &Vector<S, D>) -> bool {
-    members.iter().all(|o| o.gamma(x) < S::one())
 }
 
 /// Between the centres, the point where both Gammas are equal.

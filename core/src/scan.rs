@@ -8,7 +8,7 @@
 //! ```
 //!
 //! On the surface of a point's ball nbar is its normal and the flow slides along it; between points on two sides nbar is short and the flow
-//! passes through the middle unbent.
+//! passes through the middle unbent: there G is beyond what counts.
 
 use crate::obstacle::Sample;
 use crate::table::Ageing;
@@ -105,9 +105,14 @@ impl<S: Scalar, const D: usize> Scan<S, D> {
         }
         let normal = normal / sum;
         let share = norm(&normal).min(one);
-        let effective = if share > gamma.max(one) / S::FAR { gamma / share } else { S::FAR };
         // On a surface nothing may flow in, whatever the other points touched at the same time say.
-        let effective = if gamma <= one { gamma } else { effective };
+        let far = gamma > one && share <= gamma / S::FAR;
+        let effective = if gamma <= one || far { gamma } else { gamma / share };
+        if far || !(effective < S::FAR) {
+            return (gamma, None);
+        }
+        // Of unit length, for in fixed point a short one has no square.
+        let normal = if share > zero { normal / share } else { normal };
         let sample = Sample { gamma: effective, outward: normal, arm: normal, surface_velocity: Vector::zeros() };
         (gamma, Some(sample))
     }

@@ -32,13 +32,14 @@ bitflags! {
         const HELD = 1 << 4;
         /// No fresh robot state: the command ramps to zero.
         const LATE = 1 << 5;
-        /// The arithmetic left the range of numbers: the command is zero. No input is known to do this.
+        /// The arithmetic left the range of numbers, which no input is known to do, or the time step was negative or no number: the command is zero.
         const NOT_FINITE = 1 << 6;
-        /// Hard cores overlap in a ring: they have no reference point in common, and the flow may end between them.
+        /// Hard cores overlap without a common reference point: the flow may end in a pocket between two of them.
         const CLUSTER = 1 << 7;
-        /// The guard changed the command, for the next sample would have been in a hard core.
+        /// The guard changed the command, for by the next sample it would have come nearer to a hard core than it may.
         const GUARDED = 1 << 8;
-        /// No velocity within the speed limit keeps the next sample out of every hard core: the command violates them the least.
+        /// The guard found no velocity within the speed limit that keeps the next sample out of every hard core: of those it knows of, the command
+        /// violates the worst the least.
         const INFEASIBLE = 1 << 9;
     }
 }

@@ -278,3 +278,35 @@ fn vectors_and_matrices_work() {
     assert_eq!(number(1.5).powi(3), number(3.375));
     assert_eq!(number(2.0).min(number(-1.0)).max(number(0.0)), Fixed::zero());
 }
+
+#[test]
+fn unit_vectors_and_polar_coordinates_of_points_of_every_size() {
+    let (mut worst, mut worst_polar) = (0.0_f64, 0.0_f64);
+    let small = (-30..=30).flat_map(|a| (-30..=30).map(move |b| (a, b)));
+    for (a, b) in pairs().chain(small) {
+        for c in [0, a ^ b] {
+            let exact = [a, b, c].map(f64::from);
+            let length = exact.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let (found, unit) = Fixed::unit([bits(a), bits(b), bits(c)]);
+            let capped = length.min(f64::from(i32::MAX));
+            assert!(
+                (f64::from(found.to_bits()) - capped).abs() <= 0.5 + 1.5e-8 * length,
+                "{a} {b} {c}: {found} {length}"
+            );
+            if length == 0.0 {
+                assert_eq!(unit, [Fixed::zero(); 3]);
+                continue;
+            }
+            for (x, exact) in unit.iter().zip(exact) {
+                worst = worst.max((x.to_f64() - exact / length).abs());
+            }
+            if c == 0 {
+                let (found, angle) = Fixed::polar(bits(a), bits(b));
+                assert_eq!(angle, bits(b).atan2(bits(a)));
+                worst_polar = worst_polar.max((f64::from(found.to_bits()) - capped).abs() - 4e-8 * length);
+            }
+        }
+    }
+    println!("unit: {} steps; polar: {worst_polar} steps and 4e-8 of the length", worst / STEP);
+    assert!(worst <= 0.52 * STEP && worst_polar <= 0.5);
+}

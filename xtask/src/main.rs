@@ -2,11 +2,12 @@
 //!
 //! One module a task or a concept: [`setup`] (what the machine must have), [`checks`] (the steps of
 //! `test`), [`tally`] (test counts out of cargo's output), [`size`] over [`image`] (what the firmware
-//! takes), [`no_panic`] over [`callers`] (that the tick cannot panic), [`campaign`], [`fuzz`],
+//! takes), [`no_panic`] over [`callers`] (that the tick cannot panic), [`campaign`], [`bench`], [`fuzz`],
 //! [`demos`]; beneath them [`workspace`] starts commands and [`failure`] is what goes wrong, as one sentence.
 
 #![forbid(unsafe_code)]
 
+mod bench;
 mod callers;
 mod campaign;
 mod checks;
@@ -34,6 +35,7 @@ Tasks:
   setup                   install what the project needs and this machine lacks
   campaign [NAME ...] [--samples N]
                           the core's property campaigns, or those named, N samples for each scalar type (10^8 by default; hours)
+  bench                   time one velocity and count its instructions; installs Callgrind's parts if missing
   no-panic                show that the tick cannot panic, on either core
   size [--json]           text, data, bss and stack of the firmware
   fuzz [--seconds N]      run every fuzz target, N seconds each (600 by default)
@@ -61,6 +63,7 @@ fn run(arguments: &[String]) -> Result<(), Failure> {
         ["size"] => size::run(&Workspace::locate()?, size::Format::Table),
         ["size", "--json"] => size::run(&Workspace::locate()?, size::Format::Json),
         ["campaign", options @ ..] => campaign::run(&Workspace::locate()?, options),
+        ["bench"] => bench::run(&Workspace::locate()?),
         ["no-panic"] => no_panic::run(&Workspace::locate()?),
         ["fuzz", options @ ..] => fuzz::run(&Workspace::locate()?, fuzz::seconds(options)?),
         ["deny"] => deny::install_and_check(&Workspace::locate()?),

@@ -59,22 +59,27 @@ fn rustup(request: &[&str], missing: &[&str]) -> Result<(), Failure> {
 }
 
 fn qemu() -> Result<(), Failure> {
-    if works(Command::new(QEMU).arg("--version")) {
+    program("QEMU for Arm", QEMU)
+}
+
+/// A program of a Debian package of the same name.
+pub fn program(what: &str, name: &str) -> Result<(), Failure> {
+    if works(Command::new(name).arg("--version")) {
         return Ok(());
     }
     if !works(Command::new("apt-get").arg("--version")) {
-        return Err(Failure::new(format!("QEMU for Arm is missing: install your system's package that has `{QEMU}`")));
+        return Err(Failure::new(format!("{what} is missing: install your system's package that has `{name}`")));
     }
     let privilege = Privilege::of_this_process();
-    let mut install = privilege.apt_get(&["install", "--yes", "--no-install-recommends", QEMU]);
-    println!("setup: apt-get install {QEMU}");
+    let mut install = privilege.apt_get(&["install", "--yes", "--no-install-recommends", name]);
+    println!("setup: apt-get install {name}");
     // Lists that are absent or out of date fail the first attempt: only then are they fetched.
     let attempt = quietly(&mut install).or_else(|_| {
         let mut update = privilege.apt_get(&["update"]);
         println!("setup: apt-get update");
         quietly(&mut update).and_then(|()| quietly(&mut install))
     });
-    attempt.map_err(|said| Failure::new(format!("QEMU for Arm is missing: run `sudo apt-get install {QEMU}` ({said})")))
+    attempt.map_err(|said| Failure::new(format!("{what} is missing: run `sudo apt-get install {name}` ({said})")))
 }
 
 /// How apt-get gets the rights it needs.

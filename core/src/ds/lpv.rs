@@ -1,6 +1,6 @@
 //! The LPV-DS: a Gaussian mixture that blends linear systems with one attractor.
 
-use crate::{Matrix, RANGE, Scalar, Vector, in_range};
+use crate::{Matrix, RANGE, Scalar, Vector, in_range, times};
 
 /// Most components a skill may have: what a device has room for.
 pub const MAX_COMPONENTS: usize = 16;
@@ -109,8 +109,8 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
         let mut depths = [S::zero(); MAX_COMPONENTS];
         let mut least = S::MAX;
         for (depth, c) in depths.iter_mut().zip(&self.components) {
-            let y = c.whitening * (x - c.mean) * S::from_f64(0.125);
-            *depth = y.dot(&y) - c.log_weight * S::from_f64(1.0 / 32.0);
+            let y = times(&c.whitening, &(x - c.mean)) * S::from_f64(0.125);
+            *depth = S::dot(y.as_slice(), y.as_slice()) - c.log_weight * S::from_f64(1.0 / 32.0);
             least = least.min(*depth);
         }
         // Log-sum-exp: one exponent is now zero, so the sum is at least one and nothing is 0/0 far from the data.
@@ -120,7 +120,7 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
         for (depth, c) in depths.iter().zip(&self.components) {
             let gamma = ((least - *depth) * S::from_f64(32.0)).exp();
             sum += gamma;
-            velocity += c.a * offset * gamma;
+            velocity += times(&c.a, &offset) * gamma;
         }
         velocity / sum
     }

@@ -9,7 +9,9 @@
 //!
 //! keeps x + u dt out of a convex core exactly, not only in the limit dt -> 0: the half-space is that of the next sample, so no velocity of
 //! the obstacle and no second order of its turning enters. Of all u that fulfil every inequality and |u| <= speed the one nearest to what was
-//! wanted is driven; where there is none, the one that violates the worst inequality least, and the status says so.
+//! wanted is driven. One half-space a core is enough to be outside and more than is needed: where none fulfils them all, those that hold the cores
+//! as seen from where the least violation leads are tried, without alpha. Where that fails too, the velocity that violates the worst inequality
+//! least is driven, and the status says so.
 //!
 //! What is exact: ellipsoids, boxes, cylinders, capsules, points of a scan, and polygons, whose triangles are convex. A wall's free space is
 //! convex but for polygons; a half-space would let a step end outside of its curve, so it is moved inwards by what the curve can bend within
@@ -17,18 +19,24 @@
 
 mod program;
 
+use core::cmp::Ordering;
+
 pub use program::{HalfSpace, Solution, nearest};
 
+use crate::obstacle::Outlook;
 use crate::surroundings::Surroundings;
 use crate::table::Table;
 use crate::{Scalar, Vector};
 
-/// Most half-spaces of one tick; beyond it those that bind the least are left out.
+/// Most half-spaces of one tick; those that bind the least and find no room are kept by going more slowly.
 const CAPACITY: usize = 192;
 
 /// The least skin, m: 2^-16, what fixed point needs within a metre. The same for all numbers, so that in a wedge between two surfaces, where
 /// some micrometres of room decide how fast it goes on, they agree.
 const SKIN: f64 = 1.0 / 65536.0;
+
+/// How often to look again for another way out.
+const LOOKS: u8 = 3;
 
 /// The share of the skin that one sample makes up for in its outer half: more than rounding takes, and no more of a push than that.
 const HOLD: f64 = 0.06;
@@ -65,45 +73,108 @@ impl<S: Scalar> Guard<S> {
         table: &Table<S, D, CAP>,
         around: &Surroundings<S, D, CAP>,
     ) -> Solution<S, D> {
-        let step = speed * dt;
-        let skin = skin(x);
-        let reach = self.reach(x, speed, dt);
+        let here = View { x, at: x, step: speed * dt, approach: self.approach };
+        let (seen, fastest) = self.solve(&here, wanted, speed, dt, table, around);
+        // A core that cannot be left in time alone cannot be left along with others.
+        if seen.feasible || fastest > speed {
+            return seen;
+        }
+        // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
+        let mut best = seen;
+        for _ in 0..LOOKS {
+            let at = x + best.velocity * dt;
+            let again = View { x, at: &at, step: speed * dt * S::from_f64(2.0), approach: S::one() };
+            let (found, _) = self.solve(&again, wanted, speed, dt, table, around);
+            if found.feasible {
+                return found;
+            }
+            best = found;
+        }
+        seen
+    }
+
+    /// The same by the half-spaces that are seen from one place, and the speed that the worst of them asks for.
+    fn solve<const D: usize, const CAP: usize>(
+        &self,
+        view: &View<'_, S, D>,
+        wanted: &Vector<S, D>,
+        speed: S,
+        dt: S,
+        table: &Table<S, D, CAP>,
+        around: &Surroundings<S, D, CAP>,
+    ) -> (Solution<S, D>, S) {
+        let skin = skin(view.x);
         let rate = S::one() / dt;
-        let mut all: HalfSpaces<S, D> = heapless::Vec::new();
+        let gone = view.at - view.x;
+        let mut all = HalfSpaces::new(speed);
         let mut keep = |normal: Vector<S, D>, gap: S| {
             let room = gap - skin;
             let share = if room > S::zero() {
-                self.approach
+                view.approach
             } else if gap + gap >= skin {
                 S::from_f64(HOLD)
             } else {
                 S::one()
             };
-            add(&mut all, HalfSpace { normal, offset: -(room * share * rate) });
+            all.add(HalfSpace { normal, offset: (normal.dot(&gone) - room * share) * rate });
         };
+        let wish = wanted * dt - gone;
         for (index, reach) in &around.near {
             if let Some(obstacle) = table.at(*index) {
-                obstacle.keep_out(x, &(wanted * dt), step, *reach, &mut keep);
+                let reach = *reach + view.step;
+                let from = Outlook { at: view.at, wish: &wish, step: view.step, reach, share: view.approach };
+                obstacle.keep_out(&from, &mut keep);
             }
         }
-        table.scan().keep_out(x, reach, &mut keep);
-        nearest(wanted, &mut all, speed)
+        table.scan().keep_out(view.at, self.reach(view.x, speed, dt) + view.step, &mut keep);
+        all.solve(wanted)
     }
 }
 
-type HalfSpaces<S, const D: usize> = heapless::Vec<HalfSpace<S, D>, CAPACITY>;
+/// From where surfaces are looked at.
+struct View<'a, S: Scalar, const D: usize> {
+    /// The robot, m.
+    x: &'a Vector<S, D>,
+    /// The place to look from, m.
+    at: &'a Vector<S, D>,
+    /// No sample is farther from there, m.
+    step: S,
+    /// The share of the distance that may be used up.
+    approach: S,
+}
 
-/// Puts a half-space in; where there is no room, in the place of the loosest.
-fn add<S: Scalar, const D: usize>(all: &mut HalfSpaces<S, D>, new: HalfSpace<S, D>) {
-    let Err(new) = all.push(new) else { return };
-    let loosest = all.iter_mut().fold(None, |loosest: Option<&mut HalfSpace<S, D>>, h| match loosest {
-        Some(l) if l.offset <= h.offset => Some(l),
-        _ => Some(h),
-    });
-    if let Some(loosest) = loosest
-        && loosest.offset < new.offset
-    {
-        *loosest = new;
+/// The half-spaces of one tick that any velocity could violate, and the speed up to which those that found no room cannot be.
+struct HalfSpaces<S: Scalar, const D: usize> {
+    all: heapless::Vec<HalfSpace<S, D>, CAPACITY>,
+    speed: S,
+    /// The largest offset, m/s.
+    fastest: S,
+}
+
+impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
+    fn new(speed: S) -> Self {
+        Self { all: heapless::Vec::new(), speed, fastest: S::zero() }
+    }
+
+    /// Puts one in; where there is no room, in the place of the loosest, which no velocity slower than its offset violates.
+    fn add(&mut self, new: HalfSpace<S, D>) {
+        if !(new.offset > -self.speed) {
+            return;
+        }
+        self.fastest = self.fastest.max(new.offset);
+        let Err(mut new) = self.all.push(new) else { return };
+        if let Some(loosest) =
+            self.all.iter_mut().min_by(|a, b| a.offset.partial_cmp(&b.offset).unwrap_or(Ordering::Equal))
+            && loosest.offset < new.offset
+        {
+            core::mem::swap(loosest, &mut new);
+        }
+        self.speed = -new.offset;
+    }
+
+    fn solve(&mut self, wanted: &Vector<S, D>) -> (Solution<S, D>, S) {
+        let solution = nearest(wanted, &mut self.all, self.speed);
+        (Solution { feasible: solution.feasible && self.speed >= S::zero(), ..solution }, self.fastest)
     }
 }
 

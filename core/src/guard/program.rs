@@ -7,7 +7,7 @@
 //! Where nothing is allowed, the least violation t is found by the same scheme: t equals the violation of the half-space i met
 //! last, so the others ask for (n_j - n_i).u >= b_j - b_i, and the best velocity is the farthest along n_i.
 
-use crate::{Matrix, RANGE, Scalar, Vector, norm};
+use crate::{Matrix, RANGE, Scalar, Vector, norm, unit};
 
 /// The velocities `{ u : normal.u >= offset }`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,12 +76,12 @@ pub fn nearest<S: Scalar, const D: usize>(
     }
     let half_spaces = with_sides(half_spaces);
     let margin = tolerance * S::from_f64(4.0);
-    let exact = Programme::nearest(goal, speed, S::zero(), tolerance);
-    let velocity = match exact.solve(half_spaces) {
-        Some(velocity) if worst(half_spaces, &velocity) <= margin => velocity,
-        _ => least_violation(goal, start, half_spaces, speed),
-    };
-    let violation = worst(half_spaces, &velocity);
+    let exact = Programme::nearest(goal, start, speed, S::zero(), tolerance).solve(half_spaces);
+    let checked = exact.map(|velocity| (velocity, worst(half_spaces, &velocity)));
+    let (velocity, violation) = checked.filter(|(_, violation)| *violation <= margin).unwrap_or_else(|| {
+        let velocity = least_violation(goal, start, half_spaces, speed);
+        (velocity, worst(half_spaces, &velocity))
+    });
     let feasible = violation <= margin;
     let violation = if feasible { S::zero() } else { violation };
     Solution { velocity, changed: velocity != *wanted, violation, feasible }
@@ -173,7 +173,7 @@ fn least_violation<S: Scalar, const D: usize>(
         least = h.violation(&velocity).max(S::zero());
     }
     let least = worst(half_spaces, &velocity) + tolerance;
-    match Programme::nearest(goal, speed, least, tolerance).solve(half_spaces) {
+    match Programme::nearest(goal, start, speed, least, tolerance).solve(half_spaces) {
         Some(nearer) if worst(half_spaces, &nearer) <= least + tolerance => nearer,
         _ => velocity,
     }
@@ -190,6 +190,8 @@ enum Goal<S: Scalar, const D: usize> {
 /// The best velocity in the ball of which no half-space is violated more than `level`.
 struct Programme<S: Scalar, const D: usize> {
     goal: Goal<S, D>,
+    /// The best velocity in all of the ball.
+    best: Vector<S, D>,
     /// Its own violation is what is allowed to the others: an offset alone is the same everywhere.
     level: HalfSpace<S, D>,
     speed: S,
@@ -212,11 +214,11 @@ impl<S: Scalar, const D: usize> Flat<S, D> {
     /// What rounding leaves of a small part need not lie along the flat, and a velocity moved that way would leave it: so the
     /// part is taken again, of the unit vector.
     fn direction(&self, part: &Vector<S, D>, least: S) -> Option<Vector<S, D>> {
-        let length = norm(part);
+        let (length, direction) = unit(part);
         if !(length > least) {
             return None;
         }
-        let unit = self.along * (part / length);
+        let unit = self.along * direction;
         let squared = unit.dot(&unit);
         let rounding = S::EPSILON * S::from_f64(4.0);
         if (squared - S::one()).abs() <= rounding {
@@ -232,34 +234,41 @@ fn indistinct<S: Scalar>() -> S {
 }
 
 impl<S: Scalar, const D: usize> Programme<S, D> {
-    fn nearest(goal: Vector<S, D>, speed: S, violation: S, tolerance: S) -> Self {
+    fn nearest(goal: Vector<S, D>, best: Vector<S, D>, speed: S, violation: S, tolerance: S) -> Self {
         let level = HalfSpace { normal: Vector::zeros(), offset: violation };
-        Self { goal: Goal::Near(goal), level, speed, tolerance }
+        Self { goal: Goal::Near(goal), best, level, speed, tolerance }
     }
 
     fn lowest(level: HalfSpace<S, D>, speed: S, tolerance: S) -> Self {
-        Self { goal: Goal::Along(level.normal), level, speed, tolerance }
+        let best = level.normal / norm(&level.normal) * speed;
+        Self { goal: Goal::Along(level.normal), best, level, speed, tolerance }
     }
 
     fn solve(&self, half_spaces: &mut [HalfSpace<S, D>]) -> Option<Vector<S, D>> {
         let (centre, along) = (Vector::zeros(), Matrix::identity());
-        self.solve_on(&Flat { dimension: D, centre, radius: self.speed, along }, half_spaces)
+        self.solve_on(&Flat { dimension: D, centre, radius: self.speed, along }, self.best, half_spaces)
     }
 
-    /// The best velocity on a flat; `None` where there is none. Calls itself at most D deep.
-    fn solve_on(&self, flat: &Flat<S, D>, half_spaces: &mut [HalfSpace<S, D>]) -> Option<Vector<S, D>> {
-        let mut velocity = self.best(flat);
+    /// The best velocity on a flat, whose best whatever the half-spaces is known; `None` where there is none. Calls itself at most D deep.
+    fn solve_on(
+        &self,
+        flat: &Flat<S, D>,
+        best: Vector<S, D>,
+        half_spaces: &mut [HalfSpace<S, D>],
+    ) -> Option<Vector<S, D>> {
+        let mut velocity = best;
         for active in 0..half_spaces.len() {
             let (done, rest) = half_spaces.split_at_mut_checked(active)?;
             let bound = self.level.violation(&velocity) + self.tolerance;
             let Some(h) = worst_first(rest, &velocity, bound) else { break };
-            velocity = self.solve_on(&self.cut(flat, &h)?, done)?;
+            let boundary = self.cut(flat, &h)?;
+            velocity = self.solve_on(&boundary, self.best_on(&boundary), done)?;
         }
         Some(velocity)
     }
 
     /// The best velocity on a flat, whatever the half-spaces.
-    fn best(&self, flat: &Flat<S, D>) -> Vector<S, D> {
+    fn best_on(&self, flat: &Flat<S, D>) -> Vector<S, D> {
         if flat.dimension == 0 {
             return flat.centre;
         }

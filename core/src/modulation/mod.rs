@@ -11,7 +11,7 @@
 use core::array::from_fn;
 
 use crate::obstacle::Sample;
-use crate::{Scalar, Vector, norm};
+use crate::{Scalar, Vector, norm, unit};
 
 /// The velocity past one obstacle:
 ///
@@ -48,7 +48,6 @@ fn past_one<S: Scalar, const D: usize>(
 const LANES: usize = if cfg!(any(target_arch = "x86_64", target_arch = "aarch64")) { 4 } else { 1 };
 /// Groups of them that wait to be taken in together: what is done to them would not fit into registers along with what is done to find them.
 const GROUPS: usize = if LANES == 1 { 8 } else { 1 };
-const ROOM: usize = GROUPS * LANES;
 
 /// Obstacles side by side; see [`Sample`].
 #[derive(Clone, Copy, Debug)]
@@ -60,11 +59,16 @@ struct Group<S, const D: usize> {
 }
 
 impl<S: Scalar, const D: usize> Group<S, D> {
+    /// One obstacle in every lane.
     #[inline(always)]
-    fn new() -> Self {
-        let none = [S::zero(); LANES];
-        let all = [none; D];
-        Self { gamma: none, outward: all, arm: all, surface_velocity: all }
+    fn new(sample: &Sample<S, D>) -> Self {
+        let each = |v: &Vector<S, D>| from_fn(|d| [v[d]; LANES]);
+        Self {
+            gamma: [sample.gamma; LANES],
+            outward: each(&sample.outward),
+            arm: each(&sample.arm),
+            surface_velocity: each(&sample.surface_velocity),
+        }
     }
 
     /// The velocities past them, and whether their reference points are usable.
@@ -88,10 +92,11 @@ impl<S: Scalar, const D: usize> Group<S, D> {
 /// A velocity bent round obstacles that come one after the other.
 #[derive(Debug)]
 pub(crate) struct Modulation<S: Scalar, const D: usize> {
+    /// The lane for the next obstacle, and those that wait.
+    lane: usize,
+    groups: heapless::Vec<Group<S, D>, GROUPS>,
+    /// Behind them, for compilers clear what lies between two numbers that are zero at one go, room for what waits and all.
     f: [S; D],
-    /// Room for obstacles, and how many wait in it.
-    groups: [Group<S, D>; GROUPS],
-    waiting: usize,
     /// Were there any before those that wait?
     others: bool,
     mean: DirectionalMean<S, D>,
@@ -103,15 +108,19 @@ impl<S: Scalar, const D: usize> Modulation<S, D> {
     /// Nothing but the nominal velocity f, m/s.
     #[inline(always)]
     pub fn new(f: &Vector<S, D>) -> Self {
-        let (groups, mean) = ([Group::new(); GROUPS], DirectionalMean::new(f));
-        Self { f: from_fn(|d| f[d]), groups, waiting: 0, others: false, mean, unusable: false }
+        let (groups, mean) = (heapless::Vec::new(), DirectionalMean::new(f));
+        Self { lane: 0, groups, f: from_fn(|d| f[d]), others: false, mean, unusable: false }
     }
 
     /// One more obstacle.
     #[inline(always)]
     pub fn push(&mut self, sample: &Sample<S, D>) {
-        let lane = self.waiting % LANES;
-        if let Some(group) = self.groups.get_mut(self.waiting / LANES) {
+        // Where there is one lane, this is a constant.
+        let lane = self.lane % LANES;
+        if lane == 0 {
+            // There is room, for it is emptied when it is full.
+            let _ = self.groups.push(Group::new(sample));
+        } else if let Some(group) = self.groups.last_mut() {
             group.gamma[lane] = sample.gamma;
             for d in 0..D {
                 group.outward[d][lane] = sample.outward[d];
@@ -119,24 +128,31 @@ impl<S: Scalar, const D: usize> Modulation<S, D> {
                 group.surface_velocity[d][lane] = sample.surface_velocity[d];
             }
         }
-        self.waiting += 1;
-        if self.waiting == ROOM {
+        self.lane = (lane + 1) % LANES;
+        if self.lane == 0 && self.groups.is_full() {
             self.flush();
         }
     }
 
     /// The velocity past all of them, m/s, and whether one of their reference points was unusable.
     #[inline]
-    pub fn finish(mut self) -> (Vector<S, D>, bool) {
-        if !self.others && self.waiting <= 1 {
-            if self.waiting == 0 {
-                return (Vector::from_fn(|d, _| self.f[d]), false);
+    pub fn finish(&mut self) -> (Vector<S, D>, bool) {
+        match self.groups.as_slice() {
+            [] if !self.others => (Vector::from_fn(|d, _| self.f[d]), false),
+            [one] if !self.others && self.in_last() == 1 => {
+                let (usable, velocity) = one.past(&self.f);
+                (Vector::from_fn(|d, _| velocity[d][0]), !usable[0])
             }
-            let (usable, velocity) = self.groups[0].past(&self.f);
-            return (Vector::from_fn(|d, _| velocity[d][0]), !usable[0]);
+            _ => {
+                self.flush();
+                (self.mean.velocity(), self.unusable)
+            }
         }
-        self.flush();
-        (self.mean.velocity(), self.unusable)
+    }
+
+    /// How many obstacles the last group has.
+    fn in_last(&self) -> usize {
+        if self.lane.is_multiple_of(LANES) { LANES } else { self.lane }
     }
 
     /// Takes those that wait into the mean.
@@ -144,19 +160,19 @@ impl<S: Scalar, const D: usize> Modulation<S, D> {
     fn flush(&mut self) {
         // Copies stay in registers.
         let (f, mut mean, mut unusable) = (self.f, self.mean, self.unusable);
-        for group in &self.groups {
-            if self.waiting == 0 {
-                break;
-            }
+        // Counted, for where there is room for one a compiler then writes no loop.
+        for g in 0..GROUPS {
+            let Some(group) = self.groups.get(g) else { break };
+            let here = if g + 1 < self.groups.len() { LANES } else { self.in_last() };
             let (usable, velocity) = group.past(&f);
             let seen = mean.seen(&velocity);
-            let here = self.waiting.min(LANES);
             for i in 0..here {
                 unusable |= !usable[i];
                 mean.add(group.gamma[i] - S::one(), &seen, i);
             }
-            self.waiting -= here;
         }
+        self.groups.clear();
+        self.lane = 0;
         (self.mean, self.unusable, self.others) = (mean, unusable, true);
     }
 }
@@ -223,8 +239,7 @@ struct Seen<S, const D: usize> {
 impl<S: Scalar, const D: usize> DirectionalMean<S, D> {
     fn new(f: &Vector<S, D>) -> Self {
         let (zero, none) = (Vector::zeros(), S::zero());
-        let nominal = norm(f);
-        let forward = if nominal > none { f / nominal } else { zero };
+        let (nominal, forward) = unit(f);
         Self { nominal, forward, nearest: S::MAX, sum: none, speed: none, kappa: zero, plain: zero, fading: none }
     }
 
@@ -250,8 +265,11 @@ impl<S: Scalar, const D: usize> DirectionalMean<S, D> {
                 seen.aside[i] = S::norm(&across);
             }
         }
-        for i in 0..LANES {
-            (seen.speed[i], seen.angle[i]) = S::polar(seen.ahead[i], seen.aside[i]);
+        // One by itself may not need it.
+        if LANES > 1 {
+            for i in 0..LANES {
+                (seen.speed[i], seen.angle[i]) = S::polar(seen.ahead[i], seen.aside[i]);
+            }
         }
         seen
     }
@@ -268,24 +286,28 @@ impl<S: Scalar, const D: usize> DirectionalMean<S, D> {
             self.kappa *= factor;
             self.plain *= factor;
         }
+        let (ahead, aside) = (seen.ahead[i], seen.aside[i]);
+        if ahead < S::zero() {
+            self.fading = self.fading.max(opposite(ahead, aside));
+        }
+        // On a surface it alone counts.
+        if !(self.nearest > S::zero()) && distance > S::zero() {
+            return;
+        }
         let weight = weight(distance, self.nearest);
+        let (speed, angle) = if LANES == 1 { S::polar(ahead, aside) } else { (seen.speed[i], seen.angle[i]) };
         self.sum += weight;
-        self.speed += weight * seen.speed[i];
+        self.speed += weight * speed;
         for d in 0..D {
             self.plain[d] += seen.velocity[d][i] * weight;
         }
-        let aside = seen.aside[i];
         if D == 2 {
-            self.kappa[0] += weight * seen.angle[i];
+            self.kappa[0] += weight * angle;
         } else if aside > S::zero() {
-            let share = weight * (seen.angle[i] / aside);
+            let share = weight * (angle / aside);
             for d in 0..D {
                 self.kappa[d] += seen.across[d][i] * share;
             }
-        }
-        let ahead = seen.ahead[i];
-        if ahead < S::zero() {
-            self.fading = self.fading.max(opposite(ahead, aside));
         }
     }
 

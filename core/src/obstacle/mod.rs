@@ -10,6 +10,7 @@
 //! Gamma_k is eq. 13 of Chen et al., with ln k + 1 = rho. A wall has 1/gamma, and both its surfaces come inwards: L_i/eta_i, L_i/rho_i.
 
 mod motion;
+mod reference;
 mod sample;
 mod spec;
 
@@ -22,7 +23,7 @@ pub use spec::{MAX_RATIO, MAX_SPEED, MIN_AXIS, ObstacleError, ObstacleSpec};
 pub(crate) use sample::{Sample, SoftLayer};
 
 use crate::shape::{Body, Place, root};
-use crate::{Scalar, Vector, norm};
+use crate::{Scalar, Vector, norm, times, transposed_times};
 
 /// A checked obstacle, at its present pose and size.
 ///
@@ -44,6 +45,8 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     soft_until: S,
     /// From the centre to the reference point, in the world's frame, m: as long as nothing turns it stays.
     offset: Vector<S, D>,
+    /// Is it an ellipsoid with p = 1, and no wall? The usual case goes a short way.
+    plain: bool,
     /// Does it move, turn or grow? Does it turn?
     moves: bool,
     spins: bool,
@@ -54,17 +57,37 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     /// The lengths at which hard scaled coordinates are one before ageing, m, and how much longer each becomes for each metre of it.
     young: Vector<S, D>,
     per_metre: Vector<S, D>,
-    /// 1/radius of the largest ball inside, in scaled coordinates.
+    /// What follows from the shape alone: the lengths at which its scaled coordinates are one, m, and those that growth is measured by, m; how much
+    /// the surface moves where these become a metre longer, at most and at least, m; 1/radius of the largest ball inside, in scaled coordinates.
+    unit: Vector<S, D>,
+    extent: Vector<S, D>,
+    most: S,
+    least: S,
     inner: S,
     body: Body<S, D>,
     spec: ObstacleSpec<S, D>,
-    /// The reference point in the obstacle's frame: its own, or one shared with obstacles it overlaps.
+    /// The reference point in the obstacle's frame, its own or one shared with obstacles it overlaps; and u = q * this when it was chosen.
     local_reference: Vector<S, D>,
+    chosen_at: Vector<S, D>,
     /// How much each semi-extent has grown, m.
     grown: S,
     /// How much ageing has added, m, and adds, m/s.
     aged: S,
     ageing: S,
+}
+
+/// From where half-spaces are to be found that keep a point out, and where that point may go.
+pub(crate) struct Outlook<'a, S: Scalar, const D: usize> {
+    /// m
+    pub at: &'a Vector<S, D>,
+    /// The displacement that is wished for, m: where there is a choice of half-spaces, one that leaves room for it.
+    pub wish: &'a Vector<S, D>,
+    /// No displacement is longer, m.
+    pub step: S,
+    /// Surfaces farther away may be left out, m.
+    pub reach: S,
+    /// The share of the distance that the displacement may use up.
+    pub share: S,
 }
 
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
@@ -75,32 +98,39 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     pub fn new(spec: ObstacleSpec<S, D>) -> Result<Self, ObstacleError> {
         spec.check()?;
         let (body, unit) = spec.shape.body();
-        if !body.sees_all(&spec.shape, &spec.reference.component_div(&unit)) {
+        if !(body.sight(&spec.shape, &spec.reference.component_div(&unit)).0 < S::one()) {
             return Err(ObstacleError::Reference);
         }
-        let local_reference = spec.reference;
+        let extent = spec.shape.growing_extent();
         let nothing = Vector::zeros();
         let mut obstacle = Self {
             hard: nothing,
             soft: nothing,
             soft_until: S::one(),
             offset: nothing,
+            plain: !spec.wall && body.is_ellipsoid(),
             moves: false,
             spins: false,
             swelling: S::zero(),
             slimmest: S::one(),
             young: nothing,
-            per_metre: unit.component_div(&spec.shape.growing_extent()),
+            per_metre: unit.component_div(&extent),
+            unit,
+            extent,
+            most: spec.shape.growing_most(),
+            least: spec.shape.growing_least(),
             inner: S::one() / body.inner(&spec.shape),
             body,
             spec,
-            local_reference,
+            local_reference: nothing,
+            chosen_at: nothing,
             grown: S::zero(),
             aged: S::zero(),
             ageing: S::zero(),
         };
         obstacle.rescale();
-        obstacle.place_reference();
+        obstacle.set_speeds();
+        obstacle.share_reference(None);
         Ok(obstacle)
     }
 
@@ -111,12 +141,12 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// Gamma(x), dimensionless, with safety factors, growth and ageing; the largest number there is at the centre of a wall.
     pub fn gamma(&self, x: &Vector<S, D>) -> S {
-        self.turned_out(self.body.level(&self.spec.shape, &self.local(x).component_mul(&self.hard)).0)
+        self.level(&self.local(x).component_mul(&self.hard)).0
     }
 
     /// Gamma_k(x), dimensionless.
     pub fn gamma_soft(&self, x: &Vector<S, D>) -> S {
-        self.turned_out(self.body.level(&self.spec.shape, &self.local(x).component_mul(&self.soft)).0)
+        self.level(&self.local(x).component_mul(&self.soft)).0
     }
 
     /// dGamma/dx, 1/m. Near a polygon's corners, where Gamma has a kink, the blend of both sides that the method uses.
@@ -129,7 +159,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         }
         // gamma is homogeneous of degree 2p: its gradient times u is 2p gamma.
         let length = S::from_f64(2.0 * f64::from(self.body.power())) * gamma / along;
-        let gradient = self.spec.rotation * (direction.component_mul(&self.hard) * length);
+        let gradient = times(&self.spec.rotation, &(direction.component_mul(&self.hard) * length));
         if self.spec.wall { -gradient / (gamma * gamma) } else { gradient }
     }
 
@@ -152,48 +182,65 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// The velocity of the obstacle's matter at x, m/s: v + w x (x - c), without growth.
     pub fn surface_velocity(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        self.spec.velocity + self.spec.spin * (x - self.spec.center)
+        self.spec.velocity + times(&self.spec.spin, &(x - self.spec.center))
     }
 
-    /// The reference point in the world's frame, m: its own, or one that it shares with obstacles it overlaps.
-    pub fn reference(&self) -> Vector<S, D> {
-        self.spec.center + self.offset
-    }
-
-    /// Calls `keep(n, gap)` for half-spaces n.delta >= -gap (n of unit length, world's frame; gap in m) of displacements of x that keep it
-    /// out of the hard core (a wall: inside), however far within `step` it goes; where there is a choice, with room for `wish`. Surfaces farther than `reach` may be left out.
-    pub(crate) fn keep_out(
-        &self,
-        x: &Vector<S, D>,
-        wish: &Vector<S, D>,
-        step: S,
-        reach: S,
-        mut keep: impl FnMut(Vector<S, D>, S),
-    ) {
-        let u = self.local(x).component_mul(&self.hard);
-        let wish = self.spec.rotation.tr_mul(wish).component_mul(&self.hard);
-        let place = Place { u, wish, inverse: &self.hard, wall: self.spec.wall, step, reach };
+    /// Calls `keep(n, gap)` for half-spaces n.delta >= -gap (n of unit length, world's frame; gap in m) of displacements from a place that keep
+    /// out of the hard core (a wall: inside).
+    pub(crate) fn keep_out(&self, from: &Outlook<'_, S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
+        if self.plain {
+            return self.keep_out_of_ellipsoid(from.at, keep);
+        }
+        let u = self.local(from.at).component_mul(&self.hard);
+        let wish = transposed_times(&self.spec.rotation, from.wish).component_mul(&self.hard);
+        let Outlook { step, reach, share, .. } = *from;
+        let place = Place { u, wish, inverse: &self.hard, wall: self.spec.wall, step, reach, share };
         self.body.keep_out(&self.spec.shape, &place, |normal, slack| {
             let length = norm(&normal);
             if length > S::zero() {
                 let inverse = S::one() / length;
-                keep(self.spec.rotation * (normal * inverse), slack * inverse);
+                keep(times(&self.spec.rotation, &(normal * inverse)), slack * inverse);
             }
         });
     }
 
-    /// May the hard surface be within `reach` (m) of a point with this Gamma?
-    pub(crate) fn is_near(&self, gamma: S, reach: S) -> bool {
+    /// The same for an ellipsoid with p = 1: the half-space where the ray from the centre leaves the surface, as for other superellipsoids.
+    fn keep_out_of_ellipsoid(&self, x: &Vector<S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
         let one = S::one();
-        let change = reach * self.slimmest;
-        // Most are far: 1.08^16 and 0.92^-16 are below 4, and p no more than 8.
-        if gamma > S::from_f64(4.0) && change < S::from_f64(0.08) {
-            return false;
+        let u = self.local(x).component_mul(&self.hard);
+        let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
+        if !(largest > S::zero()) {
+            return keep(self.spec.rotation.column(0).into_owned(), -one / self.hard[0]);
         }
+        // Scaled, so that squares stay within range; only the direction counts.
+        let t = u / largest;
+        let size = norm(&t);
+        let shortest = one / self.slimmest;
+        let normal = t.zip_map(&self.hard, |t, inverse| t * (inverse * shortest));
+        let inverse = one / norm(&normal);
+        keep(times(&self.spec.rotation, &(normal * inverse)), size * (largest * size - one) * shortest * inverse);
+    }
+
+    /// May the hard surface be within `reach` (m) of a point with this Gamma?
+    #[inline(always)]
+    pub(crate) fn is_near(&self, gamma: S, reach: S) -> bool {
         // The gauge is gamma^(1/2p) and changes by no more than `slimmest` a metre.
+        let change = reach * self.slimmest;
+        if self.plain {
+            let gauge = S::one() + change;
+            return gamma <= gauge * gauge;
+        }
+        self.is_within(gamma, change)
+    }
+
+    /// May the gauge be 1 where it differs by `change`, at most, from that of a point with this Gamma?
+    #[inline(never)]
+    fn is_within(&self, gamma: S, change: S) -> bool {
+        let one = S::one();
         if self.spec.wall {
             let gauge = (one - change).max(S::zero());
-            gamma * (gauge * gauge).powi(self.body.power()) <= one
+            // Beyond FAR it is not told how far.
+            gamma.min(S::FAR) * (gauge * gauge).powi(self.body.power()) <= one
         } else {
             gamma <= ((one + change) * (one + change)).powi(self.body.power())
         }
@@ -206,30 +253,43 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// All of the hard core lies within this of the centre, m.
     pub(crate) fn outer(&self) -> S {
-        let unit = self.spec.shape.body().1;
-        let largest = unit.iter().zip(self.hard.iter()).fold(S::zero(), |m, (l, hard)| m.max(S::one() / (*l * *hard)));
+        let largest =
+            self.unit.iter().zip(self.hard.iter()).fold(S::zero(), |m, (l, hard)| m.max(S::one() / (*l * *hard)));
         self.spec.shape.outer() * largest
     }
 
     /// q = Q' (x - c)
     #[inline(always)]
     fn local(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        self.spec.rotation.tr_mul(&(x - self.spec.center))
+        transposed_times(&self.spec.rotation, &(x - self.spec.center))
     }
 
-    /// gamma, or 1/gamma for a wall.
-    fn turned_out(&self, gamma: S) -> S {
-        if !self.spec.wall {
+    /// Gamma at these scaled coordinates, and the direction of gamma's gradient.
+    #[inline(always)]
+    fn level(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
+        if self.plain {
+            return (S::dot(u.as_slice(), u.as_slice()), *u);
+        }
+        // Taken apart, so that the result above need not pass through the memory of this one.
+        let (gamma, direction) = self.level_of_others(*u);
+        (gamma, Vector::from_fn(|i, _| direction[i]))
+    }
+
+    #[inline(never)]
+    fn level_of_others(&self, u: Vector<S, D>) -> (S, Vector<S, D>) {
+        let (gamma, direction) = self.body.level(&self.spec.shape, &u);
+        let gamma = if !self.spec.wall {
             gamma
         } else if gamma > S::one() / S::FAR {
             S::one() / gamma
         } else {
             S::MAX
-        }
+        };
+        (gamma, direction)
     }
 
     fn on_surface(&self, direction: &Vector<S, D>, inverse: &Vector<S, D>) -> Vector<S, D> {
-        let q = self.spec.rotation.tr_mul(direction);
+        let q = transposed_times(&self.spec.rotation, direction);
         let u = q.component_mul(inverse);
         let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
         if !(largest > S::zero()) {

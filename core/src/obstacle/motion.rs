@@ -38,11 +38,15 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// Makes the core larger by ageing, for `dt` seconds at `rate` m/s. The soft layer stays where it is: margin wins over softness.
     pub(crate) fn age(&mut self, rate: S, dt: S) {
         self.aged += rate * dt;
+        self.inflate();
+    }
+
+    /// From now on it grows by ageing, at `rate` m/s.
+    pub(crate) fn ages(&mut self, rate: S) {
         if rate != self.ageing {
             self.ageing = rate;
             self.set_speeds();
         }
-        self.inflate();
     }
 
     /// Stops all motion: nobody knows any more.
@@ -56,37 +60,25 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.set_speeds();
     }
 
-    /// Takes a reference point (world's frame, m) in common with others, or its own again.
-    pub(crate) fn share_reference(&mut self, shared: Option<&Vector<S, D>>) {
-        self.local_reference = shared.map_or(self.spec.reference, |x| self.local(x));
-        self.place_reference();
-    }
-
-    pub(super) fn place_reference(&mut self) {
-        self.offset = self.spec.rotation * self.local_reference;
-    }
-
     /// All that follows from the size.
     pub(super) fn rescale(&mut self) {
         let (one, zero) = (S::one(), S::zero());
-        let extent = self.spec.shape.growing_extent();
-        let (_, unit) = self.spec.shape.body();
-        let least = extent.iter().fold(S::MAX, |m, x| m.min(*x));
+        let shortest = self.extent.iter().fold(S::MAX, |m, x| m.min(*x));
         // A shrinking body ends as one with the least semi-extent there may be.
-        let floor = S::MIN_AXIS - least;
+        let floor = S::MIN_AXIS - shortest;
         if self.grown <= floor {
             self.grown = floor;
             self.spec.growth = self.spec.growth.max(zero);
+            self.set_speeds();
         }
-        let size = extent.map(|a| (a + self.grown) / a);
+        let size = self.extent.map(|a| (a + self.grown) / a);
         let wall = self.spec.wall;
         let scale = |ratio: &Vector<S, D>| size.zip_map(ratio, |g, ratio| if wall { g / ratio } else { g * ratio });
-        self.young = unit.component_mul(&scale(&self.spec.margin));
-        self.soft = unit.zip_map(&scale(&self.spec.soft_ratio), |l, g| one / (l * g));
+        self.young = self.unit.component_mul(&scale(&self.spec.margin));
+        self.soft = self.unit.zip_map(&scale(&self.spec.soft_ratio), |l, g| one / (l * g));
         // Ageing makes the layer thinner, so what is found without it holds.
         self.hard = self.young.map(|l| one / l);
         self.soft_until = self.soft_reach();
-        self.set_speeds();
         self.inflate();
     }
 
@@ -98,14 +90,15 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             one / if wall { (l - aged * more).max(l * S::from_f64(0.1)) } else { l + aged * more }
         });
         self.slimmest = self.hard.iter().fold(S::zero(), |m, x| m.max(*x)) * self.inner;
+        self.place_reference();
     }
 
     /// How the surface moves, and whether anything does.
-    fn set_speeds(&mut self) {
+    pub(super) fn set_speeds(&mut self) {
         let zero = S::zero();
         let (grows, wall) = (self.spec.growth, self.spec.wall);
         // Towards free space the surface moves no faster than this, and away from it no slower.
-        let (most, least) = (self.spec.shape.growing_most(), self.spec.shape.growing_least());
+        let (most, least) = (self.most, self.least);
         let ageing = if wall { -self.ageing } else { self.ageing };
         // A safety factor is one on the growth as well; of a wall it divides.
         let eta = self.spec.margin.iter().fold(S::one(), |m, eta| m.max(*eta));

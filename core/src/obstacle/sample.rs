@@ -1,7 +1,7 @@
 //! An obstacle as it looks from one point.
 
 use super::Obstacle;
-use crate::{Scalar, Vector, norm};
+use crate::{Scalar, Vector, times, unit};
 
 /// What the modulation wants to know of an obstacle.
 #[derive(Clone, Debug)]
@@ -26,53 +26,48 @@ pub(crate) struct SoftLayer<S: Scalar, const D: usize> {
     pub arm: Vector<S, D>,
     /// The obstacle's first axis in the world's frame.
     pub first_axis: Vector<S, D>,
+    /// In space, the axis about which a fixed side is found, in the world's frame.
+    pub leaning: Vector<S, D>,
 }
+
+/// That axis in the obstacle's frame: one along which robots seldom approach.
+const LEANING: [f64; 3] = [1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0];
 
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// How it looks from x.
     #[inline(always)]
     pub(crate) fn sample(&self, x: &Vector<S, D>) -> Sample<S, D> {
         let q = self.local(x);
-        let (gamma, direction) = self.body.level(&self.spec.shape, &q.component_mul(&self.hard));
-        let shape_normal = self.spec.rotation * direction.component_mul(&self.hard);
+        let (gamma, direction) = self.level(&q.component_mul(&self.hard));
+        let shape_normal = times(&self.spec.rotation, &direction.component_mul(&self.hard));
         let mut surface_velocity = Vector::zeros();
         if self.moves {
             surface_velocity = self.surface_velocity(x);
             if self.swelling != S::zero() {
-                surface_velocity += unit(&shape_normal) * self.swelling;
+                surface_velocity += unit(&shape_normal).1 * self.swelling;
             }
         }
         let arm = x - self.spec.center - self.offset;
-        Sample { gamma: self.turned_out(gamma), outward: shape_normal, arm, surface_velocity }
+        Sample { gamma, outward: shape_normal, arm, surface_velocity }
     }
 
-    /// May a point with this Gamma be in the soft layer?
+    /// May a point with this Gamma be in the soft layer, or in the core?
     #[inline(always)]
     pub(crate) fn may_be_soft(&self, gamma: S) -> bool {
-        // The usual answer first.
-        gamma <= self.soft_until && gamma > S::one()
+        gamma <= self.soft_until
     }
 
     /// The soft layer at x, if x is in it and not in the core, from what was sampled there.
     #[inline(never)]
-    pub(crate) fn soft_layer(
-        &self,
-        x: &Vector<S, D>,
-        outward: Vector<S, D>,
-        arm: Vector<S, D>,
-    ) -> Option<SoftLayer<S, D>> {
+    pub(crate) fn soft_layer(&self, x: &Vector<S, D>, sample: Sample<S, D>) -> Option<SoftLayer<S, D>> {
         let gamma_soft = self.gamma_soft(x);
-        let normal = unit(&outward);
-        (gamma_soft <= S::one()).then(|| SoftLayer {
+        let normal = unit(&sample.outward).1;
+        (sample.gamma > S::one() && gamma_soft <= S::one()).then(|| SoftLayer {
             gamma_soft,
             normal: if self.spec.wall { -normal } else { normal },
-            arm,
+            arm: sample.arm,
+            leaning: self.spec.rotation * Vector::from_fn(|i, _| S::from_f64(LEANING[i.min(2)])),
             first_axis: self.spec.rotation.column(0).into_owned(),
         })
     }
-}
-
-fn unit<S: Scalar, const D: usize>(v: &Vector<S, D>) -> Vector<S, D> {
-    let length = norm(v);
-    if length > S::zero() { v / length } else { Vector::zeros() }
 }

@@ -9,9 +9,12 @@ type Pair<S> = (S, S);
 
 /// sum_i c_i u^i
 #[inline(always)]
-fn polynomial<S: Scalar, const N: usize>(c: &[S; N], u: S) -> S {
+pub(super) fn polynomial<S: Scalar, const N: usize>(c: &[S; N], u: S) -> S {
     c.iter().rev().copied().reduce(|sum, c| sum * u + c).unwrap_or_else(S::zero)
 }
+
+/// Is the angle of a point near to the axis worth a way of its own, which has the same bits? Not where compilers compute several at once.
+const BRANCHES: bool = cfg!(target_arch = "arm");
 
 /// What the angle of a point needs.
 pub(super) struct ArcTangent<S, const N: usize> {
@@ -36,9 +39,40 @@ impl<S: Scalar, const N: usize> ArcTangent<S, N> {
         self.polar(y, x, |_| S::one()).1
     }
 
+    /// t^2 and atan t for t = over/under up to tan(pi/8).
+    #[inline(always)]
+    fn short(&self, over: S, under: S) -> (S, S) {
+        let t = over / under;
+        let u = t * t;
+        (u, t + t * (u * polynomial(&self.series, u)))
+    }
+
     /// The length and angle of (x, y); `root` is sqrt(1 + u) for u up to tan(pi/8)^2.
     #[inline(always)]
     pub fn polar(&self, y: S, x: S, root: impl Fn(S) -> S) -> (S, S) {
+        if !BRANCHES {
+            return self.anywhere(y, x, root);
+        }
+        let across = y.abs();
+        if !(across <= self.bound * x) {
+            return self.elsewhere(y, x, root);
+        }
+        if x == S::zero() {
+            return (S::zero(), S::zero());
+        }
+        let (u, angle) = self.short(across, x);
+        (x * root(u), if y < S::zero() { -angle } else { angle })
+    }
+
+    /// Apart, so that nothing of it is done before it is known to be needed.
+    #[cold]
+    #[inline(never)]
+    fn elsewhere(&self, y: S, x: S, root: impl Fn(S) -> S) -> (S, S) {
+        self.anywhere(y, x, root)
+    }
+
+    #[inline(always)]
+    fn anywhere(&self, y: S, x: S, root: impl Fn(S) -> S) -> (S, S) {
         let (zero, half) = (S::zero(), S::from_f64(0.5));
         let (across, along) = (y.abs(), x.abs());
         let upright = across > along;
@@ -49,9 +83,7 @@ impl<S: Scalar, const N: usize> ArcTangent<S, N> {
         let over = if steep { small * half - large * half } else { small };
         let under = if steep { small * half + large * half } else { large };
         // At the origin 0/1.
-        let t = over / if under == zero { S::one() } else { under };
-        let u = t * t;
-        let rest = t + t * (u * polynomial(&self.series, u));
+        let (u, rest) = self.short(over, if under == zero { S::one() } else { under });
         // Only selections from here on: in a loop over many points, compilers compute several at once.
         let back = x < zero;
         let rest = if upright { -rest } else { rest };

@@ -1,6 +1,5 @@
 //! Fixed point for processors without a floating-point unit.
 
-use super::angle::ArcTangent;
 use super::{Scalar, integer, transcendental};
 use core::fmt::{Debug, Display, Formatter, Result};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -20,13 +19,14 @@ const HALF: i64 = 1 << (DIGITS - 1);
 /// | | error | instructions, Armv6-M |
 /// |---|---|---|
 /// | `+` `-` negation `abs` | none | 5 |
-/// | `*` | half a step | 30 |
-/// | `/` | half a step | 180 |
-/// | `sqrt` | half a step | 160 |
-/// | `dot`, `norm` of two | half a step | 100, 230 |
-/// | `exp` | one step, or 2.5e-7 of the result | 130 |
-/// | `sin_cos` | 7e-7, and 4e-10 of the angle | 230 |
-/// | `atan2` | 1.5e-6 | 510 |
+/// | `*` | half a step | 28 |
+/// | `/` | half a step | 120 |
+/// | `sqrt` | half a step | 95 |
+/// | `dot`, `norm` of two | half a step | 70, 140 |
+/// | `unit` of two or three | half a step and a fiftieth; of the length half a step and 1.5e-8 of it | 220, 260 |
+/// | `exp` | one step, or 2.5e-7 of the result | 95 |
+/// | `sin_cos` | 7e-7, and 4e-10 of the angle | 200 |
+/// | `polar`, `atan2` | 1.5e-6; of the length half a step and 4e-8 of it, as it is turned in 29 digits | 185 |
 /// | `from_f64` | half a step | none for a constant |
 ///
 /// ```
@@ -96,9 +96,7 @@ impl Mul for Fixed {
     /// To the nearest step, ties upwards.
     #[inline]
     fn mul(self, other: Self) -> Self {
-        // A product is at most 2^62.
-        let rounded = integer::product(self.to_bits(), other.to_bits()).wrapping_add(HALF);
-        Self::from_bits(integer::narrowed::<DIGITS>(rounded))
+        Self::from_bits(integer::scaled::<DIGITS>(self.to_bits(), other.to_bits()))
     }
 }
 
@@ -145,22 +143,6 @@ impl One for Fixed {
         Self(I12F20::ONE)
     }
 }
-
-/// The polynomial's own error is 6e-8 of a radian, up to t = 1/2: for points of a few steps tan(pi/8) is not well met.
-const ATAN: ArcTangent<Fixed, 4> = ArcTangent {
-    bound: Fixed::from_bits(434_334),
-    eighth: Fixed::from_bits(823_550),
-    quarter: Fixed::from_bits(1_647_099),
-    three_eighths: Fixed::from_bits(2_470_649),
-    half: Fixed::from_bits(3_294_199),
-    lacking: Fixed::from_bits(0),
-    series: [
-        Fixed::from_bits(-349_510),
-        Fixed::from_bits(209_095),
-        Fixed::from_bits(-141_820),
-        Fixed::from_bits(73_892),
-    ],
-};
 
 impl Scalar for Fixed {
     const EPSILON: Self = Self(I12F20::DELTA);
@@ -211,13 +193,11 @@ impl Scalar for Fixed {
         (Self::from_bits(sin), Self::from_bits(cos))
     }
     fn polar(x: Self, y: Self) -> (Self, Self) {
-        (Self::norm(&[x, y]), y.atan2(x))
+        let (length, angle) = transcendental::polar(x.to_bits(), y.to_bits());
+        (Self::from_bits(length), Self::from_bits(angle))
     }
     fn atan2(self, x: Self) -> Self {
-        // An angle knows no size: the larger the numbers, the more digits the quotient has. Two bits are left for sums.
-        let room = (self.to_bits().unsigned_abs() | x.to_bits().unsigned_abs()).leading_zeros();
-        let grown = |v: Self| if room > 2 { Self::from_bits(v.to_bits() << (room - 2)) } else { v };
-        ATAN.angle(grown(self), grown(x))
+        Self::polar(x, self).1
     }
     fn rounding(size: Self) -> Self {
         // A step for the product itself, and one for each whole unit of a term that is itself wrong by a step; rounded up.
@@ -225,18 +205,35 @@ impl Scalar for Fixed {
         Self::from_bits(whole + 1)
     }
     fn norm(components: &[Self]) -> Self {
-        let square = components.iter().fold(0_u64, |sum, x| {
-            let square = integer::product(x.to_bits(), x.to_bits());
-            sum.saturating_add(square.unsigned_abs())
-        });
+        // The sum of four may be 2^64.
+        let squares = components.iter().map(|x| integer::square(x.to_bits()));
+        let square = if components.len() <= 3 {
+            squares.fold(0, u64::wrapping_add)
+        } else {
+            squares.fold(0, u64::saturating_add)
+        };
         Self::from_bits(integer::root(square) as i32)
+    }
+    fn unit<const D: usize>(v: [Self; D]) -> (Self, [Self; D]) {
+        const { assert!(D <= 3, "the square of four may be 2^64") };
+        let (length, unit) = integer::unit(v.map(Self::to_bits));
+        (Self::from_bits(length as i32), unit.map(|x| Self::from_bits(integer::rounded(x, 29 - DIGITS))))
     }
     #[inline]
     fn dot(a: &[Self], b: &[Self]) -> Self {
-        let sum = a.iter().zip(b).fold(HALF, |sum, (a, b)| {
-            // Three terms fit, or saturate where the result does; more of them may depend on their order, out of range.
-            sum.saturating_add(integer::product(a.to_bits(), b.to_bits()))
-        });
-        Self::from_bits(integer::narrowed::<DIGITS>(sum))
+        if let ([a, c], [b, d]) = (a, b) {
+            let [a, b, c, d] = [a, b, c, d].map(|x| x.to_bits());
+            return Self::from_bits(integer::scaled_pair::<DIGITS>(a, b, c, d));
+        }
+        let products = || a.iter().zip(b).map(|(a, b)| integer::product(a.to_bits(), b.to_bits()));
+        // A product is at most 2^62. The sum of three may leave 64 bits, but not come back to where a result fits.
+        if a.len() <= 3
+            && let Some(sum) = integer::narrowed::<DIGITS>(products().fold(HALF, i64::wrapping_add))
+        {
+            return Self::from_bits(sum);
+        }
+        // More of them may depend on their order, out of range.
+        let sum = products().fold(HALF, i64::saturating_add);
+        Self::from_bits(integer::narrowed::<DIGITS>(sum).unwrap_or_else(|| integer::end((sum >> 32) as i32)))
     }
 }

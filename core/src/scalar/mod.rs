@@ -72,12 +72,19 @@ pub trait Scalar:
     /// Error, rad: 9e-16 (`f64`), 2e-7 (`f32`), 1.5e-6 ([`Fixed`]).
     fn atan2(self, x: Self) -> Self;
     /// Length and angle (as [`Scalar::atan2`]) of the point (x, y): for little more than the angle. Error of the length: 2e-16 (`f64`), 2e-7 (`f32`) of
-    /// it, one step ([`Fixed`]).
+    /// it, half a step and 4e-8 of it ([`Fixed`]).
     fn polar(x: Self, y: Self) -> (Self, Self);
     /// A bound on the rounding error of one product of terms of this size.
     fn rounding(size: Self) -> Self;
     /// Euclidean length, for components whose squares need not fit in fixed point.
     fn norm(components: &[Self]) -> Self;
+    /// The length of a vector of up to three components, and the vector over it; zero where that is no number. Error of the length in fixed point: half a
+    /// step, and 1.5e-8 of it.
+    #[inline(always)]
+    fn unit<const D: usize>(v: [Self; D]) -> (Self, [Self; D]) {
+        let length = Self::norm(&v);
+        (length, if length > Self::zero() { v.map(|x| x / length) } else { [Self::zero(); D] })
+    }
     /// a_0 b_0 + a_1 b_1 + ..., as far as both go.
     fn dot(a: &[Self], b: &[Self]) -> Self;
 

@@ -1,8 +1,8 @@
-//! e^x, sine and cosine of fixed-point numbers with 20 binary digits after the point.
+//! e^x, sine, cosine and polar coordinates of fixed-point numbers with 20 binary digits after the point.
 //!
 //! The polynomials (Remez) are evaluated with 30 digits after the point; [`high`] of a number with 30 and one with 31 has 29.
 
-use super::integer::{high, product};
+use super::integer::{high, normalised, product, rounded, short_reciprocal};
 
 /// Digits after the point.
 const DIGITS: u32 = 20;
@@ -11,12 +11,6 @@ const DIGITS: u32 = 20;
 #[inline]
 fn polynomial<const LOST: u32, const N: usize>(c: [i32; N], w: i32) -> i32 {
     c.iter().rev().copied().reduce(|sum, c| (high(sum, w) << LOST) + c).unwrap_or(0)
-}
-
-/// x / 2^by to the nearest, ties upwards; by from 1 to 31.
-#[inline]
-fn rounded(x: i32, by: u32) -> i32 {
-    ((x >> (by - 1)) + 1) >> 1
 }
 
 /// e^x. The polynomial's own error is 8e-8 of the result.
@@ -65,4 +59,51 @@ pub(super) fn sin_cos(x: i32) -> (i32, i32) {
         2 => (-sine, -cosine),
         _ => (-cosine, sine),
     }
+}
+
+/// Length and angle of (x, y); the angle is zero at the origin.
+///
+/// CORDIC (Volder 1959): the point is turned towards the first axis by angles whose tangents are powers of two, which takes shifts and sums only,
+/// and becomes longer by what is known beforehand. Once the angle is small, it is the ratio of the coordinates.
+pub(super) fn polar(x: i32, y: i32) -> (i32, i32) {
+    /// atan(2^-i) for i from 1 on, in 2^-29
+    const TURNS: [i32; 8] =
+        [248_918_915, 131_521_918, 66_762_579, 33_510_843, 16_771_758, 8_387_925, 4_194_219, 2_097_141];
+    /// What these turns make the length shorter by, in 2^-31: the product of cos(atan(2^-i)).
+    const SHORTER: i32 = 1_844_232_157;
+    /// pi/2 and pi in 2^-29
+    const QUARTER: i32 = 843_314_857;
+    const HALF: i32 = 1_686_629_713;
+    let (across, along) = (y.unsigned_abs(), x.unsigned_abs());
+    if across | along == 0 {
+        return (0, 0);
+    }
+    // An angle knows no size: the larger coordinate has 29 digits, with room for what it grows. The smaller one goes across.
+    let (_, zeros) = normalised(across | along);
+    let grown = |v: u32| ((v << zeros) >> 3) as i32;
+    let upright = across > along;
+    let (mut a, mut b) = if upright { (grown(across), grown(along)) } else { (grown(along), grown(across)) };
+    let mut angle = 0;
+    for (i, turn) in (1..).zip(TURNS) {
+        if b >= 0 {
+            (a, b, angle) = (a + (b >> i), b - (a >> i), angle + turn);
+        } else {
+            (a, b, angle) = (a - (b >> i), b + (a >> i), angle - turn);
+        }
+    }
+    // |b/a| <= 2^-8, of which the third power would not show.
+    let doubled = u32::from(a < 1 << 29);
+    let reciprocal = short_reciprocal((a as u32) << (2 + doubled)) as i32;
+    let ratio = (rounded(b << doubled, 7) * reciprocal) >> 9;
+    let rest = angle + ratio;
+    // sqrt(a^2 + b^2) = a + b (b/a)/2
+    let long = high(a + ((b * (ratio >> 12)) >> 18), SHORTER);
+    let length = match zeros {
+        ..4 => (long as u32).saturating_mul(16 >> zeros).min(i32::MAX as u32) as i32,
+        4 => long,
+        _ => rounded(long, zeros - 4),
+    };
+    let rest = if upright { QUARTER - rest } else { rest };
+    let rest = rounded(if x < 0 { HALF - rest } else { rest }, 29 - DIGITS);
+    (length, if y < 0 { -rest } else { rest })
 }

@@ -87,6 +87,8 @@ pub(crate) struct Place<'a, S: Scalar, const D: usize> {
     pub step: S,
     /// Surfaces farther than this need no half-space, m.
     pub reach: S,
+    /// The share of the distance that the displacement may use up.
+    pub share: S,
 }
 
 impl<S: Scalar, const D: usize> Shape<S, D> {
@@ -216,11 +218,12 @@ impl<S: Scalar, const D: usize> Body<S, D> {
         }
     }
 
-    /// Is the whole surface seen from this point of the shape's scaled coordinates?
-    pub fn sees_all(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> bool {
+    /// At most 1 where the whole surface is seen from, so that a reference point may be there: gamma, but of a polygon. And the direction in which
+    /// it grows.
+    pub fn sight(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> (S, Vector<S, D>) {
         match (self, shape) {
-            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).sees_all(u),
-            _ => self.level(shape, u).0 < S::one(),
+            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).sight(u),
+            _ => self.level(shape, u),
         }
     }
 
@@ -233,21 +236,13 @@ impl<S: Scalar, const D: usize> Body<S, D> {
         }
     }
 
-    /// gamma(u), and the direction of its gradient.
-    #[inline(always)]
-    pub fn level(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> (S, Vector<S, D>) {
-        if let Self::Superellipsoid(Superellipsoid { p: 1 }) = self {
-            return (S::dot(u.as_slice(), u.as_slice()), *u);
-        }
-        // Taken apart, so that an ellipsoid's result need not pass through the memory of the others'.
-        let (gamma, direction) = self.level_of_others(shape, *u);
-        (gamma, Vector::from_fn(|i, _| direction[i]))
+    /// Is gamma = |u|^2?
+    pub fn is_ellipsoid(&self) -> bool {
+        matches!(self, Self::Superellipsoid(Superellipsoid { p: 1 }))
     }
 
-    /// The same for all but ellipsoids.
-    #[inline(never)]
-    fn level_of_others(&self, shape: &Shape<S, D>, u: Vector<S, D>) -> (S, Vector<S, D>) {
-        let u = &u;
+    /// gamma(u), and the direction of its gradient.
+    pub fn level(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> (S, Vector<S, D>) {
         match (self, shape) {
             (Self::Superellipsoid(body), _) => body.level(u),
             (Self::Rounded(body), _) => body.level(u),

@@ -7,11 +7,16 @@ use crate::{ObstacleError, RANGE, Scalar, Vector};
 pub const MAX_VERTICES: usize = 12;
 /// The share of an edge, at each end, over which the normal turns towards that of the neighbour.
 const BLEND: f64 = 0.2;
+/// By how much of the neighbour's gauge along that share it may fall at most: the further the neighbour turns away, the shorter the share.
+const FALL: f64 = 0.8;
+/// A reference point is behind every edge's line by at least a fifth of the origin's distance from it. FALL/8, what the blend may take of that, is less.
+const SIGHT: f64 = 0.8;
 
 /// A polygon, star-shaped about the origin: [`Polygon::new`] checks the number of corners, an obstacle the rest.
 ///
 /// Between two corners v and w a point is u = alpha v + beta w, and its gauge is alpha + beta. The gradient of the gauge is the edge's normal
-/// (scaled), which would jump at a corner; near one it is blended with that of the next edge, so that the velocity is continuous.
+/// (scaled), which would jump at a corner; near one it is blended with that of the next edge, so that the velocity is continuous. Where that edge
+/// turns away steeply it is so only very near, for the normal must lead away from every reference point there may be.
 ///
 /// ```
 /// use pliant_core::{Obstacle, ObstacleSpec, Vector, shape::{Polygon, Shape}};
@@ -39,6 +44,14 @@ impl<S: Scalar> Edge<S> {
         // |normal| = 1/distance of the edge's line.
         let normal = [along[1] / double_area, -along[0] / double_area];
         (double_area > S::zero()).then_some(Self { from, to, normal })
+    }
+
+    /// Its share in the normal of a neighbour, at this share of that one's length from the corner between them; `opposite` is the neighbour's
+    /// other corner. A half at the corner, fading over a band.
+    fn share(&self, away: S, opposite: [S; 2]) -> S {
+        let (band, fall) = (S::from_f64(BLEND), S::one() - dot(self.normal, opposite));
+        let band = if fall * band > S::from_f64(FALL) { S::from_f64(FALL) / fall } else { band };
+        ((band - away) / band).max(S::zero()).min(S::one()) * S::from_f64(0.5)
     }
 }
 
@@ -99,9 +112,15 @@ impl<S: Scalar> Scaled<'_, S> {
         self.scale
     }
 
-    /// Is this point on the inner side of every edge's line, so that it sees the whole polygon?
-    pub fn sees_all<const D: usize>(&self, r: &Vector<S, D>) -> bool {
-        self.edges().all(|e| dot(e.normal, plane(r)) < S::one())
+    /// At most 1 where the whole polygon is seen from, with some to spare: a convex function like gamma, and never below it. And where it grows to.
+    pub fn sight<const D: usize>(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
+        let u = plane(u);
+        let (most, steepest) = self.edges().fold((S::zero(), [S::zero(); 2]), |(most, steepest), edge| {
+            let here = dot(edge.normal, u);
+            if here > most { (here, edge.normal) } else { (most, steepest) }
+        });
+        let share = most / S::from_f64(SIGHT);
+        (share * share, vector(steepest))
     }
 
     /// The distance of the nearest edge's line from the origin.
@@ -109,10 +128,15 @@ impl<S: Scalar> Scaled<'_, S> {
         self.edges().fold(S::MAX, |least, e| least.min(S::one() / S::norm(&e.normal)))
     }
 
+    /// Every corner, with the one before it.
     fn pairs(&self) -> impl Iterator<Item = ([S; 2], [S; 2])> {
         let scale = self.scale;
-        let all = self.vertices.iter().map(move |v| [v[0] * scale, v[1] * scale]);
-        all.clone().zip(all.clone().skip(1).chain(all.take(1)))
+        let scaled = move |v: &[S; 2]| [v[0] * scale, v[1] * scale];
+        let mut before = self.vertices.last().map_or([S::zero(); 2], scaled);
+        self.vertices.iter().map(move |v| {
+            let here = scaled(v);
+            (core::mem::replace(&mut before, here), here)
+        })
     }
 
     fn edges(&self) -> impl Iterator<Item = Edge<S>> {
@@ -153,21 +177,20 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
         let Some((end, edge)) = self.leaving(u).and_then(|end| Some((end, self.ending(end)?))) else {
             return (S::zero(), Vector::zeros());
         };
-        let (half, band) = (S::from_f64(0.5), S::from_f64(BLEND));
         let gauge = dot(edge.normal, u);
         let beta = cross(edge.from, u) / cross(edge.from, edge.to);
-        // Where on the edge, 0 to 1; the neighbour's share is a half at the corner and fades over the band.
+        // Where on the edge, 0 to 1.
         let along = beta / gauge;
-        let share = |t: S| ((band - t) / band).max(S::zero()).min(S::one()) * half;
-        let (first, last) = (share(along), share(S::one() - along));
-        let own = S::one() - first - last;
-        let mut normal = [edge.normal[0] * own, edge.normal[1] * own];
-        // Far from both corners no neighbour counts.
-        for (share, neighbour) in [(first, self.before(end)), (last, self.after(end))] {
-            if share > S::zero()
+        let corners = [(along, self.before(end), edge.to), (S::one() - along, self.after(end), edge.from)];
+        let mut normal = edge.normal;
+        for (away, neighbour, opposite) in corners {
+            // Far from both corners no neighbour counts.
+            if away < S::from_f64(BLEND)
                 && let Some(neighbour) = self.ending(neighbour)
             {
-                normal = [normal[0] + neighbour.normal[0] * share, normal[1] + neighbour.normal[1] * share];
+                let share = neighbour.share(away, opposite);
+                let own = S::one() - share;
+                normal = [0, 1].map(|i| normal[i] * own + neighbour.normal[i] * share);
             }
         }
         (gauge * gauge, vector(normal))
@@ -177,7 +200,7 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
     /// beyond the edges, between the rays through their ends. Off each of these, behind any of its sides, keeps off the whole, corners
     /// and notches included.
     fn keep_out(&self, at: &Place<'_, S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
-        let (u, wish) = (plane(&at.u), plane(&at.wish));
+        let here = Here { u: plane(&at.u), wish: plane(&at.wish), share: at.share };
         let fastest = at.inverse.iter().fold(S::zero(), |m, i| m.max(*i));
         let mut off = |piece: &Piece<S>| {
             if let Some(side) = &piece.best
@@ -189,39 +212,39 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
         if at.wall {
             for edge in self.edges() {
                 let mut piece = Piece::new(edge.from);
-                piece.edge(&edge, u, wish, -S::one());
-                piece.close(edge.to, u, wish);
+                piece.edge(&edge, &here, -S::one());
+                piece.close(edge.to, &here);
                 off(&piece);
             }
             return;
         }
-        let notch =
-            self.edges().zip(self.edges().skip(1).chain(self.edges().take(1))).position(|(a, b)| is_notch(&a, &b));
-        let Some(notch) = notch else {
+        let edges: heapless::Vec<Edge<S>, MAX_VERTICES> = self.edges().collect();
+        let mut before = edges.last();
+        let notch = edges.iter().position(|edge| before.replace(edge).is_some_and(|before| is_notch(before, edge)));
+        let Some((rest, first)) = notch.and_then(|notch| edges.split_at_checked(notch)) else {
             // Convex: one piece, and all its sides are edges.
             let mut whole = Piece::new([S::zero(); 2]);
-            self.edges().for_each(|edge| whole.edge(&edge, u, wish, S::one()));
+            edges.iter().for_each(|edge| whole.edge(edge, &here, S::one()));
             return off(&whole);
         };
         // From the first notch on, once round.
-        let mut piece: Option<(Piece<S>, Edge<S>)> = None;
-        let n = self.vertices.len();
-        for edge in self.edges().skip(notch + 1).chain(self.edges().take(notch + 1)).take(n) {
+        let mut piece: Option<(Piece<S>, &Edge<S>)> = None;
+        for edge in first.iter().chain(rest) {
             let open = match piece.take() {
-                Some((open, last)) if !is_notch(&last, &edge) && cross(open.from, edge.to) > S::zero() => Some(open),
+                Some((open, last)) if !is_notch(last, edge) && cross(open.from, edge.to) > S::zero() => Some(open),
                 Some((mut done, last)) => {
-                    done.close(last.to, u, wish);
+                    done.close(last.to, &here);
                     off(&done);
                     None
                 }
                 None => None,
             };
             let mut open = open.unwrap_or_else(|| Piece::new(edge.from));
-            open.edge(&edge, u, wish, S::one());
+            open.edge(edge, &here, S::one());
             piece = Some((open, edge));
         }
         if let Some((mut last, edge)) = piece {
-            last.close(edge.to, u, wish);
+            last.close(edge.to, &here);
             off(&last);
         }
     }
@@ -239,11 +262,25 @@ struct Piece<S> {
     best: Option<Side<S>>,
 }
 
-/// The side's normal, of any length, and how far u is beyond it and will be if it goes on as it wishes, times that length.
+/// The side's normal, of any length, how far u is beyond it, and how much of the share that may be used up the wish leaves (it is cut by what is
+/// lacking), times that length.
 struct Side<S> {
     normal: [S; 2],
     gap: S,
-    then: S,
+    left: S,
+}
+
+/// The point to keep out, where it wishes to go, and the share of its distance that it may use up.
+struct Here<S> {
+    u: [S; 2],
+    wish: [S; 2],
+    share: S,
+}
+
+impl<S: Scalar> Here<S> {
+    fn side(&self, normal: [S; 2], gap: S) -> Side<S> {
+        Side { normal, gap, left: gap * self.share + dot(normal, self.wish) }
+    }
 }
 
 impl<S: Scalar> Piece<S> {
@@ -252,30 +289,30 @@ impl<S: Scalar> Piece<S> {
     }
 
     /// One of its outer sides.
-    fn edge(&mut self, edge: &Edge<S>, u: [S; 2], wish: [S; 2], sign: S) {
+    fn edge(&mut self, edge: &Edge<S>, here: &Here<S>, sign: S) {
         let normal = [edge.normal[0] * sign, edge.normal[1] * sign];
-        let gap = (dot(edge.normal, u) - S::one()) * sign;
-        self.consider(Side { normal, gap, then: gap + dot(normal, wish) });
+        let gap = (dot(edge.normal, here.u) - S::one()) * sign;
+        self.consider(here.side(normal, gap));
     }
 
     /// Its two sides along the rays through its first and last corners. Only whoever is beyond one keeps behind it: from within, the way out is
     /// over an edge.
-    fn close(&mut self, to: [S; 2], u: [S; 2], wish: [S; 2]) {
+    fn close(&mut self, to: [S; 2], here: &Here<S>) {
         for (v, sign) in [(self.from, S::one()), (to, -S::one())] {
             let normal = [v[1] * sign, -v[0] * sign];
-            let gap = dot(normal, u);
+            let gap = dot(normal, here.u);
             if gap > S::zero() {
-                self.consider(Side { normal, gap, then: gap + dot(normal, wish) });
+                self.consider(here.side(normal, gap));
             }
         }
     }
 
-    /// Of the sides that u is beyond, the one that is least in its way; if it is beyond none, the one it is least behind.
+    /// Of the sides that u is beyond, the one that cuts its wish the least; if it is beyond none, the one it is least behind.
     fn consider(&mut self, side: Side<S>) {
         let better = self.best.as_ref().is_none_or(|best| {
             let (own, other) = (size(side.normal), size(best.normal));
             match (side.gap > S::zero(), best.gap > S::zero()) {
-                (true, true) => side.then * other > best.then * own,
+                (true, true) => side.left * other > best.left * own,
                 (false, false) => side.gap * other > best.gap * own,
                 (beyond, _) => beyond,
             }

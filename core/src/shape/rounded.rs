@@ -116,12 +116,16 @@ impl<S: Scalar, const D: usize> Rounded<S, D> {
         let zero = S::zero();
         let fastest = at.inverse.iter().fold(zero, |m, i| m.max(*i));
         let stride = at.step * fastest;
-        let room = self.radius * self.radius - stride * stride;
-        if room > zero {
+        // sqrt(r^2 - L^2), whose squares would leave fixed point few digits.
+        let rest = |r: S| {
+            let share = stride / r;
+            r * (S::one() - share * share).sqrt()
+        };
+        if stride < self.radius {
             let (away, _) = self.beyond(&at.u);
             let distance = S::norm(away.as_slice());
             if distance > zero {
-                keep(-(away / distance).component_mul(at.inverse), room.sqrt() - distance);
+                keep(-(away / distance).component_mul(at.inverse), rest(self.radius) - distance);
             }
             return;
         }
@@ -135,7 +139,7 @@ impl<S: Scalar, const D: usize> Rounded<S, D> {
                     continue;
                 }
                 (normal[0], normal[1]) = (-at.u[0] / t[0], -at.u[1] / t[0]);
-                edge = (edge * edge - stride * stride).max(zero).sqrt();
+                edge = if stride < edge { rest(edge) } else { zero };
             } else {
                 normal[i] = if at.u[i] < zero { S::one() } else { -S::one() };
             }

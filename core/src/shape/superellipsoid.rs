@@ -11,6 +11,9 @@ pub(crate) struct Superellipsoid {
 
 impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
     fn level(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
+        if self.p == 1 {
+            return (S::dot(u.as_slice(), u.as_slice()), *u);
+        }
         let gamma = u.iter().fold(S::zero(), |sum, u| sum + (*u * *u).powi(self.p));
         // |u|^(2p - 1) overflows far away and underflows near the centre; its direction is that of u / max|u|.
         let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
@@ -36,8 +39,21 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
             let gamma = u.iter().fold(S::zero(), |sum, u| sum + (*u * *u).powi(self.p));
             let stride = at.step * steepest;
             let bend = bound * p * (p + p - one) * stride * stride;
-            let unit = shortest * S::from_f64(0.5) / p;
-            keep(normal(u.map(|u| -slope(u, self.p))), (one - gamma - bend) * unit);
+            let gap = one - gamma - bend;
+            if gap >= S::zero() || gamma >= one {
+                let unit = shortest * S::from_f64(0.5) / p;
+                keep(normal(u.map(|u| -slope(u, self.p))), gap * unit);
+                return;
+            }
+            // A step is longer than the bend allows: |delta_i| <= s, with s times the gauge of (1, 1, ...) what the gauge of u lacks to one, for
+            // no gauge of a sum is more than the sum of the gauges.
+            let all = Vector::<S, D>::repeat(one);
+            let room = (one - root(gamma, self.p)) / root(all.iter().fold(S::zero(), |sum, _| sum + one), self.p);
+            for i in 0..D {
+                let side = |sign: S| Vector::from_fn(|j, _| if i == j { sign } else { S::zero() });
+                keep(normal(side(-one)), room * shortest);
+                keep(normal(side(one)), room * shortest);
+            }
             return;
         }
         // The supporting half-space where the ray from the centre leaves the surface: the normal there is that at u.

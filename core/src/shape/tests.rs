@@ -1,4 +1,5 @@
 use super::*;
+use crate::obstacle::Outlook;
 use crate::obstacle::{Obstacle, ObstacleSpec};
 use crate::{Matrix, rotation};
 use proptest::prelude::*;
@@ -89,7 +90,9 @@ fn kept_out<const D: usize>(
     steps: &[[f64; D]],
 ) -> Result<usize, TestCaseError> {
     let mut planes: heapless::Vec<(Vector<f64, D>, f64), 64> = heapless::Vec::new();
-    o.keep_out(x, &(Vector::from(steps[0]) * step), step, 2.0 * step, |n, gap| planes.push((n, gap)).unwrap());
+    let wish = Vector::from(steps[0]) * step;
+    let from = Outlook { at: x, wish: &wish, step, reach: 2.0 * step, share: 1.0 };
+    o.keep_out(&from, |n, gap| planes.push((n, gap)).unwrap());
     for (n, _) in &planes {
         prop_assert!((n.norm() - 1.0).abs() < 1e-9);
     }
@@ -221,9 +224,71 @@ fn the_centre_of_a_body_has_a_way_out() {
     for shape in [Shape::ellipsoid(V2::new(0.1, 0.2)), Shape::Box { half: V2::new(0.1, 0.2), rounding: 0.05 }] {
         let o = Obstacle::new(ObstacleSpec { shape, rotation: Matrix::identity(), ..ObstacleSpec::default() }).unwrap();
         let mut found = None;
-        o.keep_out(&V2::zeros(), &V2::zeros(), 1e-3, 1e-3, |n, gap| found = Some((n, gap)));
+        let from = Outlook { at: &V2::zeros(), wish: &V2::zeros(), step: 1e-3, reach: 1e-3, share: 1.0 };
+        o.keep_out(&from, |n, gap| found = Some((n, gap)));
         let (n, gap) = found.unwrap();
         assert_eq!(n, V2::x());
         assert!((gap + 0.1).abs() < 1e-12);
+    }
+}
+
+/// A triangle, often with an edge close by the origin.
+fn thin() -> impl Strategy<Value = [[f64; 2]; 3]> {
+    let corner = || (-0.9..0.9f64, -2.0..0.0f64);
+    let flat = (-3.0..-1.0f64, -0.1..0.1f64).prop_map(|(thin, tip)| {
+        let low = -libm::pow(10.0, thin);
+        [[-0.1, low], [0.1, low], [tip, 0.2]]
+    });
+    let any = [corner(), corner(), corner()].prop_map(|corners| {
+        let mut third = 0.0;
+        corners.map(|(turn, size)| {
+            let (angle, radius) = (third + turn, libm::pow(10.0, size));
+            third += 2.09;
+            [radius * libm::cos(angle), radius * libm::sin(angle)]
+        })
+    });
+    prop_oneof![flat, any]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(3000))]
+
+    /// However thin, seen from its origin or from a reference point as near to the line of an edge as is taken.
+    #[test]
+    fn the_normal_of_a_polygon_leads_away_from_every_reference_point(
+        corners in thin(),
+        towards in prop::array::uniform2(-1.0..1.0f64),
+        share in 0.2..1.0f64,
+        places in prop::collection::vec((0..3usize, -7.0..0.0f64, -6.0..1.0f64), 100),
+    ) {
+        let polygon = Polygon::new(&corners).unwrap();
+        let spec = ObstacleSpec { shape: Shape::Polygon(polygon.clone()), ..ObstacleSpec::default() };
+        prop_assume!(Obstacle::new(spec.clone()).is_ok());
+        let (scaled, longest) = polygon.scaled();
+        // Out to the nearest of the edges' lines.
+        let unit: V2 = unit(towards);
+        let room = |p: &V2, i: usize| {
+            let ([ax, ay], [bx, by]) = (corners[i], corners[(i + 1) % 3]);
+            (bx - ax) * (p.y - ay) - (by - ay) * (p.x - ax)
+        };
+        let zero = V2::zeros();
+        let closer = |p: &V2| (0..3).map(|i| room(p, i) / room(&zero, i)).fold(1.0, f64::min);
+        let reach = share / (1.0 - closer(&(unit * 1e-6))) * 1e-6;
+        let reference = unit * reach;
+        let taken = Obstacle::new(ObstacleSpec { reference, ..spec });
+        prop_assert_eq!(taken.is_ok(), closer(&reference) > 0.2, "{}", closer(&reference));
+        let reference = if taken.is_ok() { reference } else { zero };
+        for (corner, along, far) in places {
+            for before in [false, true] {
+                let to = corners[(corner + if before { 2 } else { 1 }) % 3];
+                let (from, to) = (V2::from(corners[corner]), V2::from(to));
+                let x = (from + (to - from) * libm::pow(10.0, along)) * (1.0 + libm::pow(10.0, far));
+                for seen in [zero, reference] {
+                    let (gamma, normal) = scaled.level(&(x / longest));
+                    let away = normal.dot(&((x - seen) / longest)) / libm::sqrt(gamma);
+                    prop_assert!(away > 0.099, "{} from {} of {:?} at {}", away, seen, corners, x);
+                }
+            }
+        }
     }
 }

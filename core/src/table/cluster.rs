@@ -1,12 +1,15 @@
 //! Obstacles whose hard cores overlap: the flow has to go round all of them together.
 //!
 //! Huber, Billard & Slotine (2019) and Huber, Slotine & Billard (2022): obstacles that have a point in common take it as their reference
-//! point, and the flow goes round their union. Where the cluster is a tree (each overlaps the next, but not all of them), each one's reference
-//! point lies towards its parent's, so that on it the flow leads away from the branch; the root keeps its own. A ring has neither, and the status
-//! says so.
+//! point, and the flow goes round their union. Where there is none the cluster is taken as a tree (each overlaps the next, but not all of them):
+//! each one's reference point lies towards its parent's, so that on it the flow leads away from the branch; the root keeps its own. That
+//! promises nothing, and the status says so.
+//!
+//! A polygon is to be seen whole from its reference point; it takes no other, and where that leaves none keeps its own.
 
 use super::Entry;
-use crate::{Obstacle, Scalar, Status, Vector, overlap};
+use crate::overlap::{self, Inside};
+use crate::{Obstacle, Scalar, Shape, Status, Vector};
 
 /// Largest cluster that is searched for one common point; larger ones are taken as trees.
 const COMMON: usize = 8;
@@ -100,10 +103,7 @@ impl<const CAP: usize> Clusters<CAP> {
             bits(cluster).for_each(|i| refer(entries, i, Some(&point)));
             return;
         }
-        let edges: u32 = bits(cluster).map(|i| self.degree(i)).sum();
-        if edges / 2 >= cluster.count_ones() {
-            self.unshared |= cluster;
-        }
+        self.unshared |= cluster;
         let Some(root) = self.root(cluster, entries) else { return };
         refer(entries, root, None);
         let (mut reached, mut front) = (1u64 << root, 1u64 << root);
@@ -123,21 +123,25 @@ impl<const CAP: usize> Clusters<CAP> {
         }
     }
 
-    /// A point inside all hard cores of a small cluster without a wall.
+    /// A point inside all hard cores of a small cluster without a wall, from which each polygon is seen whole.
     fn common_point<S: Scalar, const D: usize>(&self, cluster: u64, entries: &[Entry<S, D>]) -> Option<Vector<S, D>> {
-        let mut members: heapless::Vec<&Obstacle<S, D>, COMMON> = heapless::Vec::new();
+        let mut members: heapless::Vec<Inside<'_, S, D>, COMMON> = heapless::Vec::new();
         if cluster.count_ones() as usize > COMMON {
             return None;
         }
+        let mut polygons = false;
         for i in by_id(cluster, entries) {
-            members.push(&entries.get(i)?.obstacle).ok()?;
+            let member = &entries.get(i)?.obstacle;
+            if member.spec().wall {
+                return None;
+            }
+            polygons |= is_polygon(member);
+            members.push(Inside::Sight(member)).ok()?;
         }
-        if let [a, b] = members.as_slice() {
-            // Also where one of them is a wall: then the obstacle alone takes it.
-            return if a.spec().wall || b.spec().wall { None } else { overlap::between(a, b) };
-        }
-        if members.iter().any(|o| o.spec().wall) {
-            return None;
+        if let [Inside::Sight(a), Inside::Sight(b)] = members.as_slice()
+            && !polygons
+        {
+            return overlap::between(a, b);
         }
         let mut start = Vector::zeros();
         let mut share = S::zero();
@@ -152,11 +156,13 @@ impl<const CAP: usize> Clusters<CAP> {
         overlap::common(&members, &start)
     }
 
-    /// Where the tree begins: the wall, or else who overlaps most others.
+    /// Where the tree begins: the wall, or else who overlaps most others, of equals a polygon, for it may not be seen from elsewhere.
     fn root<S: Scalar, const D: usize>(&self, cluster: u64, entries: &[Entry<S, D>]) -> Option<usize> {
         bits(cluster)
             .filter_map(|i| entries.get(i).map(|e| (i, e)))
-            .max_by_key(|(i, e)| (e.obstacle.spec().wall, self.degree(*i), core::cmp::Reverse(e.id)))
+            .max_by_key(|(i, e)| {
+                (e.obstacle.spec().wall, self.degree(*i), is_polygon(&e.obstacle), core::cmp::Reverse(e.id))
+            })
             .map(|(i, _)| i)
     }
 
@@ -176,14 +182,17 @@ fn ordered<S: Scalar, const D: usize>(a: &Entry<S, D>, b: &Entry<S, D>) -> Optio
 }
 
 /// Where a child refers to: from the overlap with its parent on towards the parent's reference point, as far as the child's own core goes. Then in the
-/// notch between the two the child leads the flow away from the branch, as its parent does.
+/// notch between the two the child leads the flow away from the branch, as its parent does. Nowhere if a polygon is not seen whole from there.
 fn towards_parent<S: Scalar, const D: usize>(
     entries: &[Entry<S, D>],
     parent: usize,
     child: usize,
 ) -> Option<Vector<S, D>> {
-    let point = overlap(entries, parent, child)?;
+    let mut point = overlap(entries, parent, child)?;
     let (parent, child) = (&entries.get(parent)?.obstacle, &entries.get(child)?.obstacle);
+    if is_polygon(child) {
+        point = overlap::common(&[Inside::Sight(child), Inside::Core(parent)], &point)?;
+    }
     if parent.spec().wall {
         return Some(point);
     }
@@ -192,12 +201,16 @@ fn towards_parent<S: Scalar, const D: usize>(
     let (mut reached, mut step) = (S::zero(), S::one());
     for _ in 0..12 {
         let further = reached + step;
-        if further <= S::one() && child.gamma(&(point + way * further)) <= inside {
+        if further <= S::one() && child.sight(&(point + way * further)) <= inside {
             reached = further;
         }
         step *= S::from_f64(0.5);
     }
     Some(point + way * reached)
+}
+
+fn is_polygon<S: Scalar, const D: usize>(o: &Obstacle<S, D>) -> bool {
+    matches!(o.spec().shape, Shape::Polygon(_))
 }
 
 /// These places, by the identifiers of what is there.

@@ -90,7 +90,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         if age > S::zero() {
             obstacle.carry(age);
         }
-        if age > ageing.time_to_live {
+        if age >= ageing.time_to_live {
+            obstacle.ages(ageing.growth);
             obstacle.age(ageing.growth, age - ageing.time_to_live);
         }
         if age >= ageing.hold {
@@ -167,7 +168,13 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     /// they go together, as status flags.
     pub fn advance(&mut self, dt: S, ageing: &Ageing<S>) -> Status {
         let mut status = self.scan.status(ageing) | self.clusters.status();
+        let fresh = ageing.time_to_live.min(ageing.hold);
         for entry in &mut self.entries {
+            if entry.age < fresh {
+                entry.obstacle.advance(dt);
+                entry.age += dt;
+                continue;
+            }
             // Beyond the hold time nothing changes, so the age may stop there too and never loses its last digit.
             if entry.age >= ageing.hold {
                 status |= Status::HELD;
@@ -180,6 +187,10 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 entry.obstacle.age(ageing.growth, dt);
             }
             entry.age += dt;
+            if entry.age >= ageing.time_to_live {
+                // So that whoever looks next sees it coming.
+                entry.obstacle.ages(ageing.growth);
+            }
         }
         self.scan.advance(dt, ageing);
         status
@@ -200,16 +211,6 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         let (mut gamma, mut nearest) = (around.gamma, None);
         for (index, entry) in self.entries.iter().enumerate() {
             let sample = entry.obstacle.sample(x);
-            if !(sample.gamma < S::FAR) {
-                continue;
-            }
-            if deformable
-                && entry.obstacle.may_be_soft(sample.gamma)
-                && let Some(layer) = entry.obstacle.soft_layer(x, sample.outward, sample.arm)
-            {
-                // Cannot be full: it has the table's own capacity.
-                let _ = around.soft.push(layer);
-            }
             if let Some((reach, dt)) = reach {
                 // How far its surface may come in a step, and as much again for the curve of its way.
                 let fastest = sample.surface_velocity.iter().fold(S::zero(), |sum, s| sum + s.abs());
@@ -217,6 +218,17 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 if entry.obstacle.is_near(sample.gamma, reach) {
                     let _ = around.near.push((index, reach));
                 }
+            }
+            if !(sample.gamma < S::FAR) {
+                continue;
+            }
+            // The usual answer first.
+            if entry.obstacle.may_be_soft(sample.gamma)
+                && deformable
+                && let Some(layer) = entry.obstacle.soft_layer(x, sample.clone())
+            {
+                // Cannot be full: it has the table's own capacity.
+                let _ = around.soft.push(layer);
             }
             if sample.gamma < gamma {
                 (gamma, nearest) = (sample.gamma, Some(entry));

@@ -1,7 +1,6 @@
 //! Instructions and cache misses of one modulated velocity, by Callgrind: the same on a busy machine as on an idle one.
 //!
-//! `cargo bench -p pliant-bench --bench instructions`. Needs valgrind, and the runner of the same version as the library:
-//! `cargo install --locked gungraun-runner@0.20.0`.
+//! `cargo xtask bench`, which installs Valgrind and the runner of the same version as the library.
 #![allow(missing_docs, reason = "made by gungraun's macros")]
 
 use std::hint::black_box;

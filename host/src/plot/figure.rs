@@ -97,8 +97,8 @@ impl Axes {
         }
     }
 
-    /// The frame, ticks with their numbers, and the names of both directions; to go over what is drawn.
-    pub fn frame(&self, svg: &mut Svg, x_name: Option<&str>, y_name: &str) {
+    /// The frame, ticks, and for each direction with a name that and the numbers; to go over what is drawn.
+    pub fn frame(&self, svg: &mut Svg, x_name: Option<&str>, y_name: Option<&str>) {
         let (x, y) = self.ticks();
         let end = self.end();
         svg.rect(self.corner, self.size, r##"fill="none" stroke="#3a3f47""##);
@@ -113,15 +113,19 @@ impl Axes {
         for t in &y {
             let p = self.pixel(&Point2::new(self.extent.low.x, t.value));
             svg.line([p, p - Vector2::new(4.0, 0.0)], r##"stroke="#3a3f47""##);
-            svg.text(p + Vector2::new(-7.0, 4.2), Anchor::End, "", &t.label);
+            if y_name.is_some() {
+                svg.text(p + Vector2::new(-7.0, 4.2), Anchor::End, "", &t.label);
+            }
             widest = widest.max(text_width(&t.label));
         }
         if let Some(name) = x_name {
             svg.text(Point2::new((self.corner.x + end.x) / 2.0, end.y + 35.0), Anchor::Middle, "", name);
         }
-        let at = Point2::new(self.corner.x - widest - 14.0, (self.corner.y + end.y) / 2.0);
-        let turn = format!(r#"transform="rotate(-90 {:.2} {:.2})""#, at.x, at.y);
-        svg.text(at, Anchor::Middle, &turn, y_name);
+        if let Some(name) = y_name {
+            let at = Point2::new(self.corner.x - widest - 14.0, (self.corner.y + end.y) / 2.0);
+            let turn = format!(r#"transform="rotate(-90 {:.2} {:.2})""#, at.x, at.y);
+            svg.text(at, Anchor::Middle, &turn, name);
+        }
     }
 
     /// Room that the numbers and the name of y need on the left, px.

@@ -9,10 +9,14 @@
 //! # }
 //! ```
 
+mod approach;
 pub mod figure;
+mod ink;
+mod labels;
 mod legend;
 mod outline;
 mod panel;
+mod paths;
 mod png;
 mod seen;
 mod streamlines;
@@ -26,7 +30,7 @@ use std::path::Path;
 use nalgebra::{Point2, Vector2};
 
 use crate::scene::{ConvertError, Scene};
-use figure::{Axes, Svg};
+use figure::{Anchor, Axes, Svg};
 use panel::Panel;
 pub use streamlines::streamlines;
 pub use trajectory::{Trajectory, TrajectoryPoint, trajectories};
@@ -35,9 +39,9 @@ use view::View;
 /// What a scene's figure is to look like.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Scene time the obstacles and the field are drawn at, s.
+    /// Scene time the obstacles and the field are drawn at, the first one if they change, s.
     pub time: f64,
-    /// Width, px; text has a fixed size, so a smaller figure has larger text when both are shown equally wide.
+    /// Width, px, half as much again for a scene that changes; text has a fixed size, so a smaller figure has larger text when both are shown equally wide.
     pub width: f64,
     /// Draw the streamlines?
     pub streamlines: bool,
@@ -147,36 +151,64 @@ const EDGE: f64 = 12.0;
 const SCALE_ROOM: f64 = 62.0;
 /// Room under a panel for ticks, and for a name as well, px.
 const BELOW: [f64; 2] = [16.0, 42.0];
+/// Room between two columns, px.
+const BETWEEN: f64 = 18.0;
+/// Room for a title, px.
+const TITLE: f64 = 18.0;
 
-/// A scene with streamlines, obstacles and trajectories. In 3-D: from above (x-y) and from the side (x-z), with the obstacles' shadows and
-/// their sections through the attractor's plane, in which the streamlines are.
+/// A scene with streamlines, obstacles and trajectories. One that changes while robots are under way is drawn at several moments, two in a
+/// row, among them those at which robots come nearest to what moves. In 3-D: from above (x-y) and from the side (x-z), obstacles by their
+/// silhouettes, and without streamlines.
 ///
 /// # Errors
 /// A time at which an obstacle has left the range.
 pub fn scene_figure(scene: &Scene, trajectories: &[Trajectory], options: &Options) -> Result<Figure, PlotError> {
     let speeds = trajectory::speeds(trajectories).filter(|_| options.speed);
-    let views = View::of(scene);
-    let panels: Vec<Panel<'_>> =
-        views.iter().map(|view| Panel::new(scene, view, trajectories, speeds, options)).collect::<Result<_, _>>()?;
-    let extents = panel::shared(&panels);
+    let moments = approach::moments(scene, trajectories, options.time);
+    let panel = |view: &View, moment| Panel::new(scene, view, trajectories, speeds, moment, options);
+    let of_view = |view: &View| moments.iter().map(|moment| panel(view, moment)).collect::<Result<Vec<_>, _>>();
+    let views: Vec<Vec<Panel<'_>>> = View::of(scene).iter().map(of_view).collect::<Result<_, _>>()?;
+    let extents = panel::shared(&views);
+    let columns = moments.len().min(2);
+    let width = options.width * if columns > 1 { 1.5 } else { 1.0 };
     let right = EDGE + if speeds.is_some() { SCALE_ROOM } else { 0.0 };
-    let left =
-        extents.iter().map(|e| Axes::left_room(e, e.size().y / e.size().x * options.width * 0.8)).fold(0.0, f64::max);
+    let high = |e: &figure::Extent| e.size().y / e.size().x * width / columns as f64 * 0.8;
+    let left = extents.iter().map(|e| Axes::left_room(e, high(e))).fold(0.0, f64::max);
+    let each = (width - left - right - BETWEEN * (columns - 1) as f64) / columns as f64;
     let mut svg = Svg::default();
-    let mut corner = Point2::new(left, EDGE);
-    let mut axes = Vec::new();
-    for (i, (panel, extent)) in panels.iter().zip(extents).enumerate() {
-        let last = i + 1 == panels.len();
-        let here = Axes::equal(corner, options.width - left - right, extent);
-        panel.draw(&mut svg, &here, last, i)?;
-        corner.y = here.end().y + BELOW[usize::from(last)];
-        axes.push(here);
+    let mut top = EDGE;
+    let mut scale_at = None;
+    let rows = moments.len().div_ceil(columns);
+    for row in 0..rows {
+        for (v, (panels, extent)) in views.iter().zip(&extents).enumerate() {
+            let last = row + 1 == rows && v + 1 == views.len();
+            let shown = panels.iter().enumerate().skip(row * columns).take(columns);
+            top += if panels.iter().any(|p| p.title().is_some()) { TITLE } else { 0.0 };
+            let mut bottom = top;
+            for (column, (i, panel)) in shown.enumerate() {
+                let corner = Point2::new(left + (each + BETWEEN) * column as f64, top);
+                let axes = Axes::equal(corner, each, *extent);
+                panel.draw(&mut svg, &axes, &format!("{v}-{i}"));
+                let [x, y] = panel.names();
+                axes.frame(&mut svg, last.then_some(&x), (column == 0).then_some(&y));
+                if let Some(title) = panel.title() {
+                    svg.text(corner + Vector2::new(0.0, -6.0), Anchor::Start, "", &title);
+                }
+                bottom = axes.end().y;
+                // Beside the last of the first row.
+                if row + v == 0 {
+                    scale_at = Some(axes);
+                }
+            }
+            top = bottom + BELOW[usize::from(last)];
+        }
     }
-    if let (Some(speeds), [first, ..]) = (speeds, &axes[..]) {
-        legend::speed_scale(&mut svg, first, axes.last().unwrap_or(first), speeds);
+    if let (Some(speeds), Some(first)) = (speeds, scale_at) {
+        legend::speed_scale(&mut svg, &first, top - BELOW[1], speeds);
     }
-    let bottom = legend::draw(&mut svg, &panels, Point2::new(left, corner.y + 6.0), options.width - EDGE);
-    Ok(Figure { svg: svg.finish(Vector2::new(options.width, bottom + EDGE)) })
+    let all: Vec<&Panel<'_>> = views.iter().flatten().collect();
+    let bottom = legend::draw(&mut svg, &all, Point2::new(left, top + 6.0), width - EDGE);
+    Ok(Figure { svg: svg.finish(Vector2::new(width, bottom + EDGE)) })
 }
 
 #[cfg(test)]

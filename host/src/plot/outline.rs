@@ -1,4 +1,4 @@
-//! Outlines of obstacles: as they are in 2-D; the section with a plane and the shadow on it in 3-D, where all shapes are convex.
+//! Outlines of obstacles: as they are in 2-D; their silhouettes in 3-D, where all shapes are convex. And how far away they are.
 
 use std::f64::consts::TAU;
 
@@ -53,28 +53,61 @@ pub enum Surface {
     Shell,
 }
 
-/// The surface's outline in the plane of the view; none where the plane misses it.
-pub fn section(o: &PosedObstacle<'_>, surface: Surface, view: &View) -> Option<Polygon> {
+/// The surface's outline as it is seen.
+pub fn outline(o: &PosedObstacle<'_>, surface: Surface, view: &View) -> Polygon {
     let around = Around::new(o, surface);
-    let Some((axis, level)) = view.plane else {
-        return Some(angles(&o.shape).map(|a| view.project(&around.at(a.cos(), a.sin(), 0.0))).collect());
-    };
-    let mut crossings = Vec::new();
-    let above = |p: &Vector3<f64>| p[axis] - level;
-    around.for_each_edge(|a, b| {
-        let (da, db) = (above(&a), above(&b));
-        if (da <= 0.0) != (db <= 0.0) {
-            crossings.push(view.project(&(a + (b - a) * (da / (da - db)))));
-        }
-    });
-    (crossings.len() > 2).then(|| hull(crossings)).filter(|p| p.len() > 2)
+    if view.is_projection() {
+        return hull(around.mesh(MESH).iter().map(|p| view.project(p)).collect());
+    }
+    angles(&o.shape).map(|a| view.project(&around.at(a.cos(), a.sin(), 0.0))).collect()
 }
 
-/// The outline of the surface's projection.
-pub fn shadow(o: &PosedObstacle<'_>, surface: Surface, view: &View) -> Polygon {
-    let mut points = Vec::new();
-    Around::new(o, surface).for_each_edge(|a, _| points.push(view.project(&a)));
-    hull(points)
+/// The outline of what two soft layers in space, with what is in them, have in common; none if that is nothing. Not for walls.
+pub fn common(a: &PosedObstacle<'_>, b: &PosedObstacle<'_>, view: &View) -> Option<Polygon> {
+    let of = |this: &PosedObstacle<'_>, other: &PosedObstacle<'_>| {
+        let mut points = Around::new(this, Surface::Shell).mesh(MESH);
+        points.retain(|p| other.gamma_soft(p) <= 1.0);
+        points
+    };
+    let points: Vec<_> = of(a, b).iter().chain(&of(b, a)).map(|p| view.project(p)).collect();
+    (points.len() > 2).then(|| hull(points)).filter(|ring| ring.len() > 2)
+}
+
+/// The point of the hard core's surface that is nearest to another one, m.
+pub fn nearest(o: &PosedObstacle<'_>, to: &Vector3<f64>) -> Vector3<f64> {
+    let around = Around::new(o, Surface::Core);
+    let at = |u: f64, v: f64| around.at(v.sin() * u.cos(), v.sin() * u.sin(), v.cos());
+    let planar = o.obstacle.dimension() == 2;
+    let (across, down) = if planar { (180, 0) } else { (36, 18) };
+    let mut step = TAU / f64::from(across);
+    let coarse = (0..across).flat_map(|i| (0..=down).map(move |j| (i, j)));
+    let mut best = (f64::INFINITY, 0.0, 0.0);
+    let take = |u: f64, v: f64, best: &mut (f64, f64, f64)| {
+        let d = (at(u, v) - to).norm_squared();
+        let better = d < best.0;
+        if better {
+            *best = (d, u, v);
+        }
+        better
+    };
+    for (i, j) in coarse {
+        let v = if planar { TAU / 4.0 } else { TAU / 2.0 * f64::from(j) / f64::from(down) };
+        take(TAU * f64::from(i) / f64::from(across), v, &mut best);
+    }
+    // From the best of a coarse mesh on to where no small step is better.
+    while step > 1e-7 {
+        let (_, u, v) = best;
+        let mut better = false;
+        for i in -1..=1 {
+            for j in if planar { 0..=0 } else { -1..=1 } {
+                better |= take(u + step * f64::from(i), v + step * f64::from(j), &mut best);
+            }
+        }
+        if !better {
+            step /= 2.0;
+        }
+    }
+    at(best.1, best.2)
 }
 
 /// All the way round a planar shape, in order, each of its corners included; of a shape as wide as it is high.
@@ -116,19 +149,13 @@ impl<'a> Around<'a> {
         if self.soft { self.o.soft_surface(&direction) } else { self.o.surface(&direction) }
     }
 
-    fn for_each_edge(&self, mut edge: impl FnMut(Vector3<f64>, Vector3<f64>)) {
+    /// Points all over a surface in space, by meridians and parallels.
+    fn mesh(&self, (across, down): (u32, u32)) -> Vec<Vector3<f64>> {
         let at = |i: u32, j: u32| {
-            let (u, v) = (TAU * f64::from(i) / f64::from(MESH.0), TAU / 2.0 * f64::from(j) / f64::from(MESH.1));
+            let (u, v) = (TAU * f64::from(i) / f64::from(across), TAU / 2.0 * f64::from(j) / f64::from(down));
             self.at(v.sin() * u.cos(), v.sin() * u.sin(), v.cos())
         };
-        for i in 0..MESH.0 {
-            let meridians = [i, i + 1].map(|i| (0..=MESH.1).map(|j| at(i, j)).collect::<Vec<_>>());
-            let [here, next] = &meridians;
-            for (j, point) in here.iter().enumerate().take(MESH.1 as usize) {
-                edge(*point, here[j + 1]);
-                edge(*point, next[j]);
-            }
-        }
+        (0..across).flat_map(|i| (0..=down).map(move |j| (i, j))).map(|(i, j)| at(i, j)).collect()
     }
 }
 
@@ -186,7 +213,7 @@ mod tests {
             center = [0, 0]\nshape = { polygon = [[0.1, 0.0], [-0.06, 0.08], [-0.02, 0.0], [-0.06, -0.08]] }\n";
         let scene = crate::scene::Scene::parse("s.toml", text, "".as_ref()).unwrap();
         let posed = scene.obstacles()[0].at(0.0);
-        let outline = section(&posed, Surface::Core, &View::of(&scene)[0]).unwrap();
+        let outline = outline(&posed, Surface::Core, &View::of(&scene)[0]);
         for corner in [[0.1, 0.0], [-0.06, 0.08], [-0.02, 0.0], [-0.06, -0.08]] {
             assert!(outline.iter().any(|p| (p - Point2::from(corner)).norm() < 1e-9), "{corner:?}");
         }

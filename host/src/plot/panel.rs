@@ -1,27 +1,33 @@
-//! One view of a scene.
+//! One view of a scene at one moment.
 
 use nalgebra::{Point2, Vector2, Vector3};
 use pliant_core::{Controller, Region, RobotState, Vector};
 
-use super::figure::{Anchor, Axes, Extent, Svg, text_width};
-use super::outline::Region as Area;
+use super::approach::{Clearance, Moment, clearance, nearest_approach};
+use super::figure::{Axes, Extent, Svg};
+use super::ink::{draw_track, ring, rings, thinned};
+use super::labels::Labels;
+use super::outline::{Polygon, common};
+use super::paths::{self, Stroke};
 use super::seen::{Seen, track};
 use super::style::{
-    ATTRACTOR, ATTRACTOR_HEAD, ATTRACTOR_LATER, ATTRACTOR_TRACK, CASING, CORE, CUT_CORE, DOT, FLOW, FLOW_HEAD, GHOST,
-    GHOST_INSIDE, LINE, MARGIN, OVERLAP, OVERLAP_LINE, SCAN, SCAN_POINT, SHELL, SMALL, START, TRACK, TRACK_HEAD,
-    speed_colour,
+    ARRIVED, ATTRACTOR, ATTRACTOR_HEAD, ATTRACTOR_TRACK, BEFORE, BEFORE_INSIDE, CLEARANCE, CLEARANCE_CASING,
+    CLEARANCE_END, CORE, DOT, FLOW, FLOW_HEAD, MARGIN, OVERLAP, OVERLAP_LINE, SCAN, SCAN_POINT, SHELL, START, TRACK,
+    TRACK_HEAD,
 };
+use super::trajectory::TrajectoryPoint;
 use super::view::View;
 use super::{Options, PlotError, Trajectory, streamlines};
-use crate::scene::{ConvertError, MAX_OBSTACLES, Scene, SceneObstacle};
+use crate::scene::{ConvertError, MAX_OBSTACLES, Scene};
 
 /// Pixels between streamlines, about.
 const SPACING: f64 = 17.0;
-/// Times at which moving obstacles are drawn again, besides the first.
-const MARKS: u32 = 3;
 /// How much wider than high a panel may be, and the inverse.
 const WIDEST: f64 = 2.4;
 const HIGHEST: f64 = 1.15;
+
+/// How near to a core a robot is for its distance to be shown, over the size of what the robots pass through.
+const NEAR: f64 = 0.12;
 
 /// A velocity, or none where there is nothing to draw.
 type Field = Box<dyn Fn(Vector3<f64>) -> Option<Vector3<f64>>>;
@@ -32,16 +38,18 @@ pub(super) struct Panel<'a> {
     view: View,
     trajectories: &'a [Trajectory],
     speeds: Option<(f64, f64)>,
-    seen: Vec<Seen>,
-    /// Pairs of obstacles whose soft layers overlap.
+    moment: Moment,
+    seen: Vec<Seen<'a>>,
+    /// Pairs of obstacles whose soft layers overlap; in 2-D.
     overlaps: Vec<(usize, usize)>,
-    /// Where the attractor goes while the robot moves.
+    /// What soft layers have in common; in 3-D.
+    commons: Vec<Polygon>,
+    /// Where the attractor goes while robots move.
     aim: Vec<Point2<f64>>,
+    /// How near robots are to cores now; the nearest approach of each if this is no moment of several.
+    clearances: Vec<Clearance>,
+    /// Only in 2-D: a flow in space is not to be seen from one side.
     field: Option<Field>,
-    /// The time of the figure, s.
-    time: f64,
-    /// The times at which moving obstacles are drawn again, and robots marked, s.
-    marks: Vec<f64>,
 }
 
 impl<'a> Panel<'a> {
@@ -50,43 +58,54 @@ impl<'a> Panel<'a> {
         view: &View,
         trajectories: &'a [Trajectory],
         speeds: Option<(f64, f64)>,
+        moment: &Moment,
         options: &Options,
     ) -> Result<Self, PlotError> {
-        let until = trajectories.iter().map(Trajectory::duration).fold(0.0, f64::max);
-        let aims = scene.attractor_moves();
-        let moving = aims || scene.obstacles().iter().any(SceneObstacle::is_moving);
-        let between = until - options.time;
-        // To a tenth of a second, as it is written there.
-        let mark = |i| options.time + (between * f64::from(i) / f64::from(MARKS + 1) * 10.0).round() / 10.0;
-        let marks: Vec<f64> = if moving && between > 0.5 { (1..=MARKS).map(mark).collect() } else { Vec::new() };
-        let seen: Vec<Seen> =
-            scene.obstacles_at(options.time).map(|o| Seen::new(&o, view, options.time, until, &marks)).collect();
+        let Moment { time, tail } = *moment;
+        let until = trajectories.iter().map(Trajectory::duration).fold(options.time, f64::max);
+        let before = tail.map(|tail| time - tail).filter(|t| *t >= options.time);
+        let posed: Vec<_> = scene.obstacles_at(time).collect();
+        let seen: Vec<Seen<'_>> = posed.iter().map(|o| Seen::new(o, view, before, (options.time, until))).collect();
         let shells: Vec<_> = seen.iter().enumerate().filter_map(|(i, s)| Some((i, s.shell.as_ref()?))).collect();
         let pairs = shells.iter().enumerate().flat_map(|(n, a)| shells[n + 1..].iter().map(move |b| (a, b)));
-        let overlaps = pairs.filter(|(a, b)| a.1.meets(b.1)).map(|(a, b)| (a.0, b.0)).collect();
-        let attractor = |t| view.project(&scene.attractor_at(t).0);
-        let aim = if aims && until > options.time { track(options.time, until, attractor) } else { Vec::new() };
-        let field = if !options.streamlines {
-            None
-        } else if scene.dimension() == 2 {
-            Some(field::<2>(scene, options.time)?)
+        let overlaps: Vec<_> = pairs.filter(|(a, b)| a.1.meets(b.1)).map(|(a, b)| (a.0, b.0)).collect();
+        let flat = !view.is_projection();
+        let apart = |(a, b): &&(usize, usize)| !posed[*a].obstacle.is_wall() && !posed[*b].obstacle.is_wall();
+        let in_space = overlaps.iter().filter(|_| !flat).filter(apart);
+        let commons = in_space.filter_map(|(a, b)| common(&posed[*a], &posed[*b], view)).collect();
+        let aim = if scene.attractor_moves() {
+            track(options.time, until, |t| view.project(&scene.attractor_at(t).0))
         } else {
-            Some(field::<3>(scene, options.time)?)
+            Vec::new()
         };
-        Ok(Self { scene, view: *view, trajectories, speeds, seen, overlaps, aim, field, time: options.time, marks })
+        let clearances = match tail {
+            Some(_) => {
+                let here = trajectories.iter().filter_map(|t| clearance(scene, &at(t, time)?));
+                here.filter(|c| c.distance() < NEAR * size(scene, trajectories)).collect()
+            }
+            None => trajectories.iter().filter_map(|t| nearest_approach(scene, t)).collect(),
+        };
+        let field = (options.streamlines && flat).then(|| field::<2>(scene, time)).transpose()?;
+        let overlaps = if flat { overlaps } else { Vec::new() };
+        let moment = moment.clone();
+        Ok(Self { scene, view: *view, trajectories, speeds, moment, seen, overlaps, commons, aim, clearances, field })
     }
 
-    pub fn has_trajectories(&self) -> bool {
-        !self.trajectories.is_empty() && self.speeds.is_none()
+    /// How long before now what is drawn thick of a path begins, s; none if all of it is.
+    pub fn tail(&self) -> Option<f64> {
+        self.moment.tail.filter(|_| self.has_paths())
+    }
+    pub fn has_paths(&self) -> bool {
+        !self.trajectories.is_empty()
+    }
+    pub fn has_speeds(&self) -> bool {
+        self.speeds.is_some()
     }
     pub fn has_cores(&self) -> bool {
-        !self.is_cut() && !self.seen.is_empty()
+        !self.seen.is_empty()
     }
-    pub fn has_cut_cores(&self) -> bool {
-        self.is_cut() && !self.seen.is_empty()
-    }
-    fn is_cut(&self) -> bool {
-        self.view.plane.is_some()
+    pub fn is_projection(&self) -> bool {
+        self.view.is_projection()
     }
     pub fn has_margins(&self) -> bool {
         self.seen.iter().any(|s| s.margin.is_some())
@@ -95,10 +114,7 @@ impl<'a> Panel<'a> {
         self.seen.iter().any(|s| s.shell.is_some())
     }
     pub fn has_overlaps(&self) -> bool {
-        !self.overlaps.is_empty()
-    }
-    pub fn has_shadows(&self) -> bool {
-        self.seen.iter().any(|s| !s.shadows.is_empty())
+        !self.overlaps.is_empty() || !self.commons.is_empty()
     }
     pub fn has_aim(&self) -> bool {
         !self.aim.is_empty()
@@ -106,26 +122,40 @@ impl<'a> Panel<'a> {
     pub fn has_scan(&self) -> bool {
         self.scene.scan().is_some()
     }
-    pub fn has_marks(&self) -> bool {
-        !self.marks.is_empty()
+    pub fn has_flow(&self) -> bool {
+        self.field.is_some()
+    }
+    pub fn has_before(&self) -> bool {
+        self.seen.iter().any(|s| s.before.is_some())
     }
     pub fn has_tracks(&self) -> bool {
         self.seen.iter().any(|s| s.track.len() > 1)
     }
+    pub fn has_clearances(&self) -> bool {
+        !self.clearances.is_empty()
+    }
+    pub fn has_hidden(&self) -> bool {
+        self.trajectories.iter().any(|t| paths::parts(self.thick(t), &self.seen, &self.view).iter().any(|part| part.0))
+    }
+
+    /// The names of both axes.
+    pub fn names(&self) -> [String; 2] {
+        self.view.names()
+    }
+
+    /// What is written over it; nothing over a flat scene that does not change.
+    pub fn title(&self) -> Option<String> {
+        let time = self.moment.tail.map(|_| format!("t = {:.2} s", self.moment.time));
+        let parts: Vec<String> = time.into_iter().chain(self.view.title().map(String::from)).collect();
+        (!parts.is_empty()).then(|| parts.join(", "))
+    }
 
     /// What has to be in the picture.
-    fn extent(&self) -> Option<Extent> {
-        let places = self.scene.starts().iter().map(|p| self.view.project(p)).chain([self.attractor(self.time)]);
+    pub fn extent(&self) -> Option<Extent> {
+        let places = self.scene.starts().iter().map(|p| self.view.project(p)).chain([self.attractor()]);
         let paths = self.trajectories.iter().flat_map(|t| &t.points).map(|p| self.view.project(&p.position));
-        let shapes = self
-            .seen
-            .iter()
-            .flat_map(|s| {
-                let regions = s.core.iter().chain(&s.shell).map(|area| &area.ring);
-                regions.chain(&s.shadows).chain(&s.ghosts)
-            })
-            .flatten()
-            .copied();
+        let regions = self.seen.iter().flat_map(|s| std::iter::once(&s.core).chain(&s.shell));
+        let shapes = regions.flat_map(|region| &region.ring).copied();
         let scan = self.scene.scan().into_iter().flat_map(|scan| {
             let corner = Vector2::from_element(scan.radius());
             scan.points().iter().map(|p| self.view.project(p)).flat_map(move |p| [p - corner, p + corner])
@@ -133,29 +163,64 @@ impl<'a> Panel<'a> {
         Extent::around(places.chain(paths).chain(shapes).chain(scan).chain(self.aim.iter().copied()))
     }
 
-    fn attractor(&self, t: f64) -> Point2<f64> {
-        self.view.project(&self.scene.attractor_at(t).0)
+    fn attractor(&self) -> Point2<f64> {
+        self.view.project(&self.scene.attractor_at(self.moment.time).0)
     }
 
-    /// Draws the panel; `named` if the horizontal axis has its numbers and its name here.
-    pub fn draw(&self, svg: &mut Svg, axes: &Axes, named: bool, index: usize) -> Result<(), PlotError> {
+    /// The part of a path that is drawn thick.
+    fn thick<'t>(&self, trajectory: &'t Trajectory) -> &'t [TrajectoryPoint] {
+        let points = &trajectory.points[..];
+        let Some(tail) = self.moment.tail else {
+            return points;
+        };
+        let upto = |t: f64| points.partition_point(|p| p.time < t);
+        // A robot that has arrived has no tail.
+        if self.moment.time > trajectory.duration() + 1e-9 {
+            return &[];
+        }
+        points.get(upto(self.moment.time - tail)..(upto(self.moment.time) + 1).min(points.len())).unwrap_or(&[])
+    }
+
+    /// Draws all but frame and title. `name` is unique in the figure.
+    pub fn draw(&self, svg: &mut Svg, axes: &Axes, name: &str) {
         axes.grid(svg);
-        svg.clipped(&format!("panel{index}"), axes, |svg| {
+        svg.clipped(&format!("panel{name}"), axes, |svg| {
+            let pixel = |p: &Vector3<f64>| axes.pixel(&self.view.project(p));
             self.draw_flow(svg, axes);
-            self.draw_obstacles(svg, axes, index);
-            self.draw_aim(svg, axes);
+            self.draw_soft(svg, axes, name);
+            let draw = |svg: &mut Svg, part: &[TrajectoryPoint], stroke| {
+                paths::draw(svg, part, pixel, self.speeds, stroke);
+            };
+            let starts = |svg: &mut Svg| self.scene.starts().iter().for_each(|p| svg.circle(pixel(p), 4.6, START));
+            // Where robots were before, a core may have come since: it hides that. In space it hides what is behind it.
+            let (mut under, mut over) = (Vec::new(), Vec::new());
             for t in self.trajectories {
-                self.draw_trajectory(svg, axes, t);
+                let parts = paths::parts(self.thick(t), &self.seen, &self.view);
+                if self.is_projection() || self.moment.tail.is_none() {
+                    over.extend(parts);
+                } else {
+                    under.extend(parts);
+                }
             }
-            for start in self.scene.starts() {
-                svg.circle(axes.pixel(&self.view.project(start)), 4.6, START);
+            if self.moment.tail.is_some() {
+                self.trajectories.iter().for_each(|t| draw(svg, &t.points, Stroke::Thin));
             }
-            self.draw_marks(svg, axes);
-            svg.star(axes.pixel(&self.attractor(self.time)), 8.5, ATTRACTOR);
+            under.iter().for_each(|(_, part)| draw(svg, part, Stroke::Thick));
+            if self.moment.tail.is_some() {
+                starts(svg);
+            }
+            self.draw_hard(svg, axes, name);
+            draw_track(svg, axes, &self.aim, ATTRACTOR_TRACK, ATTRACTOR_HEAD);
+            for (behind, part) in over {
+                draw(svg, part, if behind { Stroke::Dashed } else { Stroke::Thick });
+            }
+            if self.moment.tail.is_none() {
+                starts(svg);
+            }
+            let mut labels = Labels::new(axes);
+            self.trajectories.iter().for_each(|t| labels.avoid(self.thick(t).iter().map(|p| pixel(&p.position))));
+            self.draw_places(svg, axes, &mut labels);
         });
-        let [x, y] = self.view.names();
-        axes.frame(svg, named.then_some(&x), &y);
-        Ok(())
     }
 
     fn draw_flow(&self, svg: &mut Svg, axes: &Axes) {
@@ -179,10 +244,9 @@ impl<'a> Panel<'a> {
         }
     }
 
-    fn draw_obstacles(&self, svg: &mut Svg, axes: &Axes, index: usize) {
+    fn draw_soft(&self, svg: &mut Svg, axes: &Axes, name: &str) {
         for s in &self.seen {
-            let ghosts = s.ghosts.iter().filter(|_| !s.shrinks);
-            ghosts.chain(&s.shadows).for_each(|ghost| svg.area(&[ring(ghost, axes)], GHOST));
+            s.before.iter().for_each(|before| svg.area(&[ring(before, axes)], BEFORE));
         }
         for shell in self.seen.iter().filter_map(|s| s.shell.as_ref()) {
             svg.area(&rings(shell, axes), SHELL);
@@ -190,167 +254,83 @@ impl<'a> Panel<'a> {
         for (n, (a, b)) in self.overlaps.iter().enumerate() {
             let shell = |i: usize| self.seen.get(i).and_then(|s| s.shell.as_ref()).map(|area| rings(area, axes));
             if let (Some(a), Some(b)) = (shell(*a), shell(*b)) {
-                svg.within(&format!("overlap{index}-{n}a"), &a, |svg| svg.area(&b, OVERLAP));
-                svg.within(&format!("overlap{index}-{n}b"), &b, |svg| svg.area(&a, OVERLAP_LINE));
+                svg.within(&format!("overlap{name}-{n}a"), &a, |svg| svg.area(&b, OVERLAP));
+                svg.within(&format!("overlap{name}-{n}b"), &b, |svg| svg.area(&a, OVERLAP_LINE));
             }
         }
+        self.commons.iter().for_each(|area| svg.area(&[ring(area, axes)], OVERLAP));
         if let Some(scan) = self.scene.scan() {
             let points = || scan.points().iter().map(|p| axes.pixel(&self.view.project(p)));
             points().for_each(|p| svg.circle(p, scan.radius() * axes.scale(), SCAN));
             points().for_each(|p| svg.circle(p, 1.2, SCAN_POINT));
         }
-        for s in &self.seen {
-            if let Some(core) = &s.core {
-                svg.area(&rings(core, axes), if self.is_cut() { CUT_CORE } else { CORE });
+    }
+
+    fn draw_hard(&self, svg: &mut Svg, axes: &Axes, name: &str) {
+        // The farthest from the viewer first.
+        let mut seen: Vec<_> = self.seen.iter().enumerate().collect();
+        let height = |s: &Seen<'_>| s.posed.pose.center.dot(&self.view.toward());
+        seen.sort_by(|a, b| height(a.1).total_cmp(&height(b.1)));
+        for (i, s) in seen {
+            let core = rings(&s.core, axes);
+            svg.area(&core, CORE);
+            if let Some(before) = &s.before {
+                svg.within(&format!("core{name}-{i}"), &core, |svg| svg.area(&[ring(before, axes)], BEFORE_INSIDE));
             }
             if let Some(margin) = &s.margin {
                 svg.area(&[ring(&margin.ring, axes)], MARGIN);
-            }
-            for ghost in s.ghosts.iter().filter(|_| s.shrinks) {
-                svg.area(&[ring(ghost, axes)], GHOST_INSIDE);
             }
             draw_track(svg, axes, &s.track, TRACK, TRACK_HEAD);
         }
     }
 
-    /// The way of the attractor, and where on it it is at the marks.
-    fn draw_aim(&self, svg: &mut Svg, axes: &Axes) {
-        draw_track(svg, axes, &self.aim, ATTRACTOR_TRACK, ATTRACTOR_HEAD);
-        if self.has_aim() {
-            for t in &self.marks {
-                let p = axes.pixel(&self.attractor(*t));
-                svg.star(p, 6.0, ATTRACTOR_LATER);
-                svg.text(p + Vector2::new(0.0, 17.0), Anchor::Middle, SMALL, &format!("{t:.1} s"));
-            }
+    /// Where robots and attractor are, and how near robots are to cores.
+    fn draw_places(&self, svg: &mut Svg, axes: &Axes, labels: &mut Labels) {
+        let pixel = |p: &Vector3<f64>| axes.pixel(&self.view.project(p));
+        let star = axes.pixel(&self.attractor());
+        labels.keep_free(star, 8.5);
+        self.scene.starts().iter().for_each(|p| labels.keep_free(pixel(p), 5.0));
+        for s in &self.seen {
+            labels.avoid(ring(&s.core.ring, axes));
         }
-    }
-
-    /// Moving obstacles and robots at the same times.
-    fn draw_marks(&self, svg: &mut Svg, axes: &Axes) {
-        let star = axes.pixel(&self.attractor(self.time)) - Vector2::new(15.0, -3.5);
-        let mut labels = Labels(vec![star]);
-        for (i, t) in self.marks.iter().enumerate() {
-            let label = format!("{t:.1} s");
-            for (seen, ghost) in self.seen.iter().filter_map(|s| Some((s, s.ghosts.get(i)?))) {
-                // Beside the way it goes, where its next outline is not.
-                let upright = seen
-                    .track
-                    .first()
-                    .zip(seen.track.last())
-                    .is_some_and(|(a, b)| (b.y - a.y).abs() > (b.x - a.x).abs());
-                let pixels: Vec<_> = ghost.iter().map(|p| axes.pixel(p)).collect();
-                if upright {
-                    let p = farthest(&pixels, &Vector2::x());
-                    labels.text(svg, p + Vector2::new(4.0, 3.5), Anchor::Start, &label);
-                } else {
-                    let p = farthest(&pixels, &Vector2::y());
-                    labels.text(svg, p + Vector2::new(0.0, 11.0), Anchor::Middle, &label);
+        for c in &self.clearances {
+            let (from, to) = (pixel(&c.robot), pixel(&c.surface));
+            svg.line([from, to], CLEARANCE_CASING);
+            svg.line([from, to], CLEARANCE);
+            svg.circle(to, 2.2, CLEARANCE_END);
+            labels.keep_free(nalgebra::center(&from, &to), 1.0);
+        }
+        svg.star(star, 8.5, ATTRACTOR);
+        for t in self.trajectories {
+            let here = self.moment.tail.and_then(|_| at(t, self.moment.time));
+            match (here, t.points.last()) {
+                (Some(here), _) => {
+                    svg.circle(pixel(&here.position), 3.6, DOT);
+                    labels.keep_free(pixel(&here.position), 6.0);
                 }
-            }
-            for at in self.trajectories.iter().filter_map(|trajectory| trajectory.points.iter().find(|p| p.time >= *t))
-            {
-                let p = axes.pixel(&self.view.project(&at.position));
-                svg.circle(p, 3.2, DOT);
-                labels.text(svg, p + Vector2::new(7.0, 3.5), Anchor::Start, &label);
+                (None, Some(end)) if self.has_aim() => svg.circle(pixel(&end.position), 3.0, ARRIVED),
+                _ => {}
             }
         }
-    }
-
-    fn draw_trajectory(&self, svg: &mut Svg, axes: &Axes, trajectory: &Trajectory) {
-        let pixels: Vec<_> = trajectory.points.iter().map(|p| axes.pixel(&self.view.project(&p.position))).collect();
-        svg.path(thinned(&pixels, 0.1), false, CASING);
-        let Some((low, high)) = self.speeds else {
-            svg.path(thinned(&pixels, 0.1), false, LINE);
-            return;
-        };
-        // Pieces of one colour each, a few pixels long at least, so that the file stays small.
-        let mut from = 0;
-        for i in 1..pixels.len() {
-            if (pixels[i] - pixels[from]).norm() < 2.0 && i + 1 < pixels.len() {
-                continue;
-            }
-            let middle = trajectory.points[(from + i) / 2].speed;
-            let colour = speed_colour((middle - low) / (high - low));
-            let style = format!(r#"fill="none" stroke="{colour}" stroke-width="3.2" stroke-linecap="round""#);
-            svg.path(pixels[from..=i].iter().copied(), false, &style);
-            from = i;
+        if self.moment.tail.is_none() {
+            self.clearances.iter().for_each(|c| svg.circle(pixel(&c.robot), 2.2, CLEARANCE_END));
+        }
+        for c in &self.clearances {
+            labels.text(svg, nalgebra::center(&pixel(&c.robot), &pixel(&c.surface)), &c.label());
         }
     }
 }
 
-/// Where a closed line goes farthest in a direction; the middle of it where that is a side.
-fn farthest(ring: &[Point2<f64>], direction: &Vector2<f64>) -> Point2<f64> {
-    let along = |p: &Point2<f64>| p.coords.dot(direction);
-    let most = ring.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
-    let there: Vec<Point2<f64>> = ring.iter().filter(|p| along(p) > most - 0.5).copied().collect();
-    Extent::around(there).map_or(Point2::origin(), |e| nalgebra::center(&e.low, &e.high))
+/// The longest way there is between two robots or from one to the attractor, about, m.
+fn size(scene: &Scene, trajectories: &[Trajectory]) -> f64 {
+    let places = trajectories.iter().flat_map(|t| &t.points).map(|p| p.position).chain([scene.attractor()]);
+    let (low, high) = places.fold((scene.attractor(), scene.attractor()), |(l, h), p| (l.inf(&p), h.sup(&p)));
+    (high - low).norm()
 }
 
-/// Small texts by their left ends, left out where something is already.
-struct Labels(Vec<Point2<f64>>);
-
-impl Labels {
-    fn text(&mut self, svg: &mut Svg, at: Point2<f64>, anchor: Anchor, text: &str) {
-        let width = text_width(text) * 0.85;
-        let left = match anchor {
-            Anchor::Start => at.x,
-            Anchor::Middle => at.x - width / 2.0,
-            Anchor::End => at.x - width,
-        };
-        let free = self.0.iter().all(|p| (p.x - left).abs() > width || (p.y - at.y).abs() > 9.0);
-        if free {
-            self.0.push(Point2::new(left, at.y));
-            svg.text(at, anchor, SMALL, text);
-        }
-    }
-}
-
-/// A dashed line with an arrowhead.
-fn draw_track(svg: &mut Svg, axes: &Axes, track: &[Point2<f64>], style: &str, head: &str) {
-    let track: Vec<_> = track.iter().map(|p| axes.pixel(p)).collect();
-    if let [.., from, tip] = track[..] {
-        svg.path(track.iter().copied(), false, style);
-        svg.arrowhead(tip, &(tip - from), 8.0, head);
-    }
-}
-
-/// A closed line on the page.
-fn ring(polygon: &[Point2<f64>], axes: &Axes) -> Vec<Point2<f64>> {
-    let closed: Vec<_> = polygon.iter().chain(polygon.first()).map(|p| axes.pixel(p)).collect();
-    let mut ring = thinned(&closed, 0.03);
-    ring.pop();
-    ring
-}
-
-/// A region on the page: what is outside of a line ends beyond the axes, where nothing is seen.
-fn rings(area: &Area, axes: &Axes) -> Vec<Vec<Point2<f64>>> {
-    let mut rings = vec![ring(&area.ring, axes)];
-    if area.outside {
-        let room = Vector2::new(10.0, 10.0);
-        let (low, high) = (axes.corner - room, axes.end() + room);
-        rings.push(vec![low, Point2::new(high.x, low.y), high, Point2::new(low.x, high.y)]);
-    }
-    rings
-}
-
-/// Without points that are within `tolerance` pixels of the line through their neighbours.
-fn thinned(points: &[Point2<f64>], tolerance: f64) -> Vec<Point2<f64>> {
-    let Some((&first, &last)) = points.first().zip(points.last()) else {
-        return Vec::new();
-    };
-    let mut kept = vec![first];
-    let mut anchor = 0;
-    for i in 2..points.len() {
-        let chord: Vector2<f64> = points[i] - points[anchor];
-        let off = |p: &Point2<f64>| chord.perp(&(p - points[anchor])).abs();
-        let length = chord.norm();
-        if i - anchor > 60 || points[anchor + 1..i].iter().any(|p| off(p) > tolerance * length) {
-            anchor = i - 1;
-            kept.push(points[anchor]);
-        }
-    }
-    kept.push(last);
-    kept
+/// Where a robot is at a time; none before its begin and after its end.
+fn at(trajectory: &Trajectory, time: f64) -> Option<TrajectoryPoint> {
+    trajectory.points.iter().find(|p| p.time >= time - 1e-9).copied()
 }
 
 fn field<const D: usize>(scene: &Scene, time: f64) -> Result<Field, ConvertError> {
@@ -363,10 +343,14 @@ fn field<const D: usize>(scene: &Scene, time: f64) -> Result<Field, ConvertError
     }))
 }
 
-/// What each panel shows: all of it, with the same horizontal range for all and no odd proportions.
-pub(super) fn shared(panels: &[Panel<'_>]) -> Vec<Extent> {
+/// What each view shows: all of it, with the same horizontal range for all and no odd proportions.
+pub(super) fn shared(views: &[Vec<Panel<'_>>]) -> Vec<Extent> {
     let unit = Extent { low: Point2::origin(), high: Point2::new(1.0, 1.0) };
-    let mut extents: Vec<Extent> = panels.iter().map(|p| p.extent().unwrap_or(unit).padded(0.08, 0.02)).collect();
+    let whole = |panels: &Vec<Panel<'_>>| {
+        let corners = panels.iter().filter_map(Panel::extent).flat_map(|e| [e.low, e.high]);
+        Extent::around(corners).unwrap_or(unit).padded(0.08, 0.02)
+    };
+    let mut extents: Vec<Extent> = views.iter().map(whole).collect();
     let low = extents.iter().map(|e| e.low.x).fold(f64::INFINITY, f64::min);
     let high = extents.iter().map(|e| e.high.x).fold(f64::NEG_INFINITY, f64::max);
     let highest = extents.iter().map(|e| e.size().y).fold(0.0, f64::max);

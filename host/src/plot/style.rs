@@ -1,8 +1,8 @@
 //! What things look like.
 
 pub(super) const CORE: &str = r##"fill="#343a43" stroke="#15181c" stroke-width="1""##;
-/// In a section paths pass before and behind what is cut: it does not hide them.
-pub(super) const CUT_CORE: &str = r##"fill="#343a43" fill-opacity="0.5" stroke="#15181c" stroke-width="1""##;
+/// px
+pub(super) const SMALL_SIZE: f64 = 10.0;
 pub(super) const SMALL: &str =
     r##"font-size="10" stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##;
 pub(super) const DOT: &str = r##"fill="#ffffff" stroke="#15181c" stroke-width="1.2""##;
@@ -10,11 +10,19 @@ pub(super) const MARGIN: &str = r##"fill="none" stroke="#15181c" stroke-width="1
 pub(super) const SHELL: &str = r##"fill="#f0a54a" fill-opacity="0.30" stroke="#c97a1c" stroke-width="1""##;
 pub(super) const OVERLAP: &str = r##"fill="#d03b5f" fill-opacity="0.42" stroke="#a81f45" stroke-width="0.8""##;
 pub(super) const OVERLAP_LINE: &str = r##"fill="none" stroke="#a81f45" stroke-width="0.8""##;
-pub(super) const GHOST: &str = r##"fill="none" stroke="#6b7480" stroke-width="0.9" stroke-dasharray="4 3""##;
-pub(super) const GHOST_INSIDE: &str = r##"fill="none" stroke="#c3cad3" stroke-width="0.9" stroke-dasharray="4 3""##;
+/// A core a little earlier, and the part of that within what it is now.
+pub(super) const BEFORE: &str = r##"fill="none" stroke="#6b7480" stroke-width="0.9" stroke-dasharray="4 3""##;
+pub(super) const BEFORE_INSIDE: &str = r##"fill="none" stroke="#c3cad3" stroke-width="0.9" stroke-dasharray="4 3""##;
 pub(super) const TRACK: &str =
     r##"fill="none" stroke="#343a43" stroke-width="1.3" stroke-dasharray="1.5 3" stroke-linecap="round""##;
-pub(super) const LINE: &str = r##"fill="none" stroke="#1f5fbf" stroke-width="3" stroke-linecap="round""##;
+/// Paths whose speed is not shown.
+pub(super) const LINE_COLOUR: &str = "#1f5fbf";
+/// From a robot to the nearest place of a core.
+pub(super) const CLEARANCE: &str = r##"stroke="#c2185b" stroke-width="1.5""##;
+pub(super) const CLEARANCE_CASING: &str = r##"stroke="#ffffff" stroke-width="3.5""##;
+pub(super) const CLEARANCE_END: &str = r##"fill="#c2185b""##;
+/// Around what is seen of a path through the core that is before it.
+pub(super) const BEHIND_CASING: &str = r##"fill="none" stroke="#ffffff" stroke-width="4""##;
 pub(super) const START: &str = r##"fill="#ffffff" stroke="#15181c" stroke-width="1.8""##;
 pub(super) const ATTRACTOR: &str = r##"fill="#ffd43b" stroke="#15181c" stroke-width="1.1" stroke-linejoin="round""##;
 pub(super) const CASING: &str =
@@ -24,9 +32,8 @@ pub(super) const FLOW_HEAD: &str = r##"fill="#8298af""##;
 /// Around the points of a scan, which are many: it does not hide them.
 pub(super) const SCAN: &str = r##"fill="#9aa2ad""##;
 pub(super) const SCAN_POINT: &str = r##"fill="#15181c""##;
-/// Where the attractor is at other times than that of the figure.
-pub(super) const ATTRACTOR_LATER: &str =
-    r##"fill="#fff3bf" stroke="#15181c" stroke-width="0.8" stroke-linejoin="round""##;
+/// Where a path ended at a moving attractor.
+pub(super) const ARRIVED: &str = r##"fill="#b8860b" stroke="#15181c" stroke-width="0.8""##;
 pub(super) const ATTRACTOR_TRACK: &str =
     r##"fill="none" stroke="#b8860b" stroke-width="1.6" stroke-dasharray="1.5 3" stroke-linecap="round""##;
 pub(super) const ATTRACTOR_HEAD: &str = r##"fill="#b8860b""##;

@@ -86,10 +86,110 @@ fn every_shipped_scene_arrives_and_has_a_figure() {
         let svg = figure.svg();
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{}", scene.name());
         assert!(svg.contains("x (m)") && svg.contains("attractor"));
+        assert_eq!(overlapping_texts(svg), Vec::<String>::new(), "{}", scene.name());
+        let has = |text: &str| svg.contains(text);
+        let in_space = scene.dimension() == 3;
+        assert_eq!(has("seen from above (from +z)") && has("seen from the side (from \u{2212}y)"), in_space);
+        assert_eq!(has("hard core (silhouette)"), in_space);
+        let changes = scene.attractor_moves() || scene.obstacles().iter().any(|o| o.is_moving());
+        assert_eq!(svg.matches(">t = ").count(), if changes { 4 } else { 0 }, "{}", scene.name());
+        assert_eq!(has("flow at that time"), changes);
+        assert!(svg.len() < 1_000_000, "{}: {} bytes", scene.name(), svg.len());
     }
     if std::env::var_os("PLIANT_KEEP_FIGURES").is_none() {
         std::fs::remove_dir_all(folder).unwrap();
     }
+}
+
+/// Pairs of texts that are written over one another, as far as their widths are known.
+fn overlapping_texts(svg: &str) -> Vec<String> {
+    let number = |line: &str, name: &str| -> Option<f64> {
+        line.split_once(&format!(" {name}=\""))?.1.split_once('"')?.0.parse().ok()
+    };
+    let boxes: Vec<_> = svg
+        .lines()
+        .filter(|line| line.starts_with("<text"))
+        .map(|line| {
+            let text = line.split_once('>').unwrap().1.trim_end_matches("</text>");
+            let size = number(line, "font-size").unwrap_or(figure::FONT_SIZE);
+            let (x, y) = (number(line, "x").unwrap(), number(line, "y").unwrap());
+            let width = figure::text_width(text) * size / figure::FONT_SIZE;
+            let before = if line.contains("\"middle\"") { 0.5 } else { f64::from(u8::from(line.contains("\"end\""))) };
+            // From the baseline up to the height of capitals; turned texts run upwards.
+            let (along, up) = ((-before * width, (1.0 - before) * width), 0.73 * size);
+            let (xs, ys) = if line.contains("rotate(-90") {
+                ((x - up, x), (y - along.1, y - along.0))
+            } else {
+                ((x + along.0, x + along.1), (y - up, y))
+            };
+            (text, xs, ys)
+        })
+        .collect();
+    let meet = |a: (f64, f64), b: (f64, f64)| a.0 < b.1 && b.0 < a.1;
+    let pairs = boxes.iter().enumerate().flat_map(|(i, a)| boxes[i + 1..].iter().map(move |b| (a, b)));
+    pairs.filter(|(a, b)| meet(a.1, b.1) && meet(a.2, b.2)).map(|(a, b)| format!("{} / {}", a.0, b.0)).collect()
+}
+
+#[test]
+fn texts_over_one_another_are_found() {
+    let mut svg = Svg::default();
+    for (x, text) in [(10.0, "0.1 s"), (30.0, "0.2 s"), (90.0, "0.3 s")] {
+        svg.text(Point2::new(x, 20.0), figure::Anchor::Start, "", text);
+    }
+    assert_eq!(overlapping_texts(&svg.finish(Vector2::new(120.0, 30.0))), ["0.1 s / 0.2 s"]);
+}
+
+const BALLS: &str = "ds.linear = { attractor = [1, 0, 0], gain = 1 }\n[[start]]\nposition = [-1, 0, 0]\n\
+    [[obstacle]]\nname = \"ball\"\ncenter = [0, 0, 0.5]\nshape = { ellipsoid = [0.2, 0.2, 0.2] }\n\
+    [[obstacle]]\nname = \"can\"\ncenter = [0, 0.6, 0]\nshape = { cylinder = [0.1, 0.3], rounding = 0.02 }\n";
+
+fn straight() -> Trajectory {
+    let positions: Vec<_> = (0..=200).map(|i| Vector3::new(-1.0 + 0.01 * f64::from(i), 0.0, 0.0)).collect();
+    Trajectory::from_positions(&positions, 0.01)
+}
+
+#[test]
+fn the_nearest_approach_is_that_to_the_true_surface() {
+    let scene = Scene::parse("s.toml", BALLS, "".as_ref()).unwrap();
+    let nearest = approach::nearest_approach(&scene, &straight()).unwrap();
+    assert!((nearest.distance() - 0.3).abs() < 1e-6 && nearest.robot.norm() < 1e-9, "{nearest:?}");
+    assert_eq!(nearest.label(), "300 mm");
+    // To a flat side, and to a rim.
+    let can = scene.obstacles()[1].at(0.0);
+    let distance = |p: Vector3<f64>| (outline::nearest(&can, &p) - p).norm();
+    assert!((distance(Vector3::new(0.0, 0.4, 0.1)) - 0.1).abs() < 1e-5);
+    assert!((distance(Vector3::new(0.03, 0.62, 0.5)) - 0.2).abs() < 1e-5);
+    let rim = distance(Vector3::new(0.2, 0.6, 0.4)) - (0.12f64.hypot(0.12) - 0.02);
+    assert!(rim.abs() < 1e-3, "{rim}");
+}
+
+#[test]
+fn a_path_is_dashed_where_a_core_is_before_it_and_nowhere_else() {
+    let scene = Scene::parse("s.toml", BALLS, "".as_ref()).unwrap();
+    let path = straight();
+    let hidden = |view: &View| -> Vec<f64> {
+        let seen: Vec<_> = scene.obstacles_at(0.0).map(|o| seen::Seen::new(&o, view, None, (0.0, 2.0))).collect();
+        let parts = paths::parts(&path.points, &seen, view);
+        let behind = parts.iter().filter(|part| part.0);
+        behind.flat_map(|(_, part)| [part[0].position.x, part[part.len() - 1].position.x]).collect()
+    };
+    let views = View::of(&scene);
+    // From above the ball hides it; from the side the can is behind it.
+    let above = hidden(&views[0]);
+    assert!(above.len() == 2 && (above[0] + 0.2).abs() < 0.021 && (above[1] - 0.2).abs() < 0.021, "{above:?}");
+    assert_eq!(hidden(&views[1]), Vec::<f64>::new());
+}
+
+#[test]
+fn moments_are_those_at_which_robots_pass_what_moves() {
+    let text = BALLS.replace("[[obstacle]]\nname = \"can\"", "[[obstacle]]\nvelocity = [0, 0, 0.01]\nname = \"can\"");
+    let scene = Scene::parse("s.toml", &text, "".as_ref()).unwrap();
+    let moments = approach::moments(&scene, &[straight()], 0.0);
+    let times: Vec<f64> = moments.iter().map(|m| m.time).collect();
+    assert!(moments.len() == 4 && times.is_sorted() && times[0] == 0.0, "{times:?}");
+    assert!(times.iter().any(|t| (t - 1.0).abs() < 0.02), "{times:?}");
+    let still = Scene::parse("s.toml", BALLS, "".as_ref()).unwrap();
+    assert_eq!(approach::moments(&still, &[straight()], 0.0), [approach::Moment { time: 0.0, tail: None }]);
 }
 
 /// Mean speed (m/s) where two soft layers overlap, with layers that give and with layers that are not there.

@@ -148,6 +148,9 @@ impl PosedObstacle<'_> {
         let o = self.obstacle;
         let rotation = self.pose.rotation.to_rotation_matrix();
         let spin = self.pose.angular_velocity.cross_matrix();
+        // It shrinks with the core, as it does between two sightings.
+        let shrunk =
+            self.shape.extent().zip_map(&o.shape.extent(), |now, first| if now < first { now / first } else { 1.0 });
         let square =
             |m: &nalgebra::Matrix3<f64>| Matrix::from_fn(|i, j| m.get((i, j)).map_or(S::zero(), |x| S::from_f64(*x)));
         Ok(ObstacleSpec {
@@ -157,7 +160,7 @@ impl PosedObstacle<'_> {
             wall: o.wall,
             soft_ratio: vector(&o.soft_ratio),
             margin: vector(&o.margin),
-            reference: vector(&o.reference),
+            reference: vector(&o.reference.component_mul(&shrunk)),
             velocity: vector(&self.pose.velocity),
             spin: square(&spin),
             growth: S::from_f64(self.growth),

@@ -116,7 +116,7 @@ pub(super) const ALLOWED: &[(&str, &str)] = &[
     (
         "obstacle.reference",
         "a point in the obstacle's own frame, in m, inside the hard core (of a wall, in the free space; of a polygon, where all of it is seen \
-         from inside); default its centre",
+         from inside, a fifth of the centre's distance or more from the line of every edge); default its centre",
     ),
     (
         "obstacle.path",

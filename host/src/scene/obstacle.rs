@@ -68,6 +68,10 @@ impl SceneObstacle {
     pub fn name(&self) -> &str {
         &self.name
     }
+    /// 2 or 3.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
     /// Its hard core at time 0.
     pub fn shape(&self) -> &Shape {
         &self.shape

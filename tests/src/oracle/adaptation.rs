@@ -29,6 +29,8 @@ pub(super) struct Layer {
     pub(super) radius: DVector<f64>,
     /// theta_1, rad.
     pub(super) heading: f64,
+    /// a, in space.
+    pub(super) leaning: DVector<f64>,
 }
 
 impl Layer {
@@ -96,12 +98,9 @@ fn fixed(u: &DVector<f64>, layers: &[Layer], angle: f64, gain: f64) -> DVector<f
 
 /// The direction of the flow in the tangent plane, with a lean to a fixed side; below full length where there
 /// is hardly any tangential flow.
-fn tangential(u: &DVector<f64>, normal: &DVector<f64>, nominal_speed: f64) -> DVector<f64> {
-    let side = if normal.len() == 2 {
-        turned_left(normal)
-    } else {
-        cross(&(DVector::from_column_slice(&[1.0, 2.0, 2.0]) / 3.0), normal)
-    };
+fn tangential(u: &DVector<f64>, layer: &Layer, nominal_speed: f64) -> DVector<f64> {
+    let normal = &layer.normal;
+    let side = if normal.len() == 2 { turned_left(normal) } else { cross(&layer.leaning, normal) };
     let t = in_tangent_plane(u, normal) + side * (LEAN * nominal_speed);
     let norm = length(&t).max(FLOOR * nominal_speed);
     t / norm
@@ -115,8 +114,7 @@ fn with_flow(u: &DVector<f64>, f: &DVector<f64>, layers: &[Layer], gain: f64, be
     let most = beta * nominal_speed;
     let active: Vec<(&Layer, f64)> =
         layers.iter().map(|layer| (layer, layer.fade())).filter(|(_, phi)| *phi > 0.0).collect();
-    let directions: Vec<DVector<f64>> =
-        active.iter().map(|(layer, _)| tangential(u, &layer.normal, nominal_speed)).collect();
+    let directions: Vec<DVector<f64>> = active.iter().map(|(layer, _)| tangential(u, layer, nominal_speed)).collect();
     let mut speed_up = DVector::zeros(u.len());
     let mut slow_down = DVector::zeros(u.len());
     for (n, (own, phi)) in active.iter().enumerate() {
@@ -144,7 +142,8 @@ mod tests {
     }
 
     fn layer(gamma_soft: f64, normal: &[f64]) -> Layer {
-        Layer { gamma_soft, soft_here: gamma_soft <= 1.0, normal: v(normal), radius: v(normal), heading: 0.0 }
+        let leaning = v(&[1.0, 2.0, 2.0]) / 3.0;
+        Layer { gamma_soft, soft_here: gamma_soft <= 1.0, normal: v(normal), radius: v(normal), heading: 0.0, leaning }
     }
 
     const WITH_FLOW: OracleSteering = OracleSteering::WithFlow { beta: 1.0 };

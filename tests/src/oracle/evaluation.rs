@@ -228,6 +228,7 @@ fn layer(body: &Body, gamma: f64, x: &DVector<f64>) -> Layer {
         normal: body.normal(x),
         radius: outward_radius(body, x),
         heading: body.heading(),
+        leaning: body.in_world(&[1.0, 2.0, 2.0]) / 3.0,
     }
 }
 

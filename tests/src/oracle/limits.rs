@@ -27,7 +27,8 @@ pub(super) fn limit(
     }
     let previous = vector(&tick.previous, u.len(), "previous velocity")?;
     let change = slow - &previous;
-    Ok(previous + shortened(change, acceleration * tick.dt))
+    // The speed counts for more than the change, where a limit has been lowered.
+    Ok(shortened(previous + shortened(change, acceleration * tick.dt), limits.speed))
 }
 
 fn shortened(v: DVector<f64>, most: f64) -> DVector<f64> {

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::error::OracleError;
 use super::geometry::{cross, rotation_matrix, turned_left, unit, vector};
+use super::polygon::SIGHT;
 use super::scene::{OracleMethod, OracleObstacle, OracleSpin};
 use super::shape::Shape;
 
@@ -68,6 +69,8 @@ impl Body {
         } else {
             (margin.component_mul(&size) + aged, size.component_mul(&soft_ratio))
         };
+        let given = vector(&obstacle.reference, dimension, "reference")?;
+        let reference = given.zip_map(&hard, |r, scale| r * scale.min(1.0));
         // A wall grows away from the free space.
         let outward = if obstacle.wall { -obstacle.growth } else { obstacle.growth };
         let fastest = match &shape {
@@ -90,7 +93,7 @@ impl Body {
             hard,
             soft,
             extents,
-            reference: vector(&obstacle.reference, dimension, "reference")?,
+            reference,
             velocity: vector(&obstacle.velocity, dimension, "velocity")?,
             spin: obstacle.spin,
             swelling: speed + obstacle.ageing * fastest,
@@ -142,6 +145,14 @@ impl Body {
         if self.wall { 1.0 / gamma } else { gamma }
     }
 
+    /// At most 1 where the reference point may be: Gamma, but of a polygon by what is in sight.
+    pub(super) fn sight(&self, x: &DVector<f64>) -> f64 {
+        match &self.shape {
+            Shape::Star(star) => (star.beyond(&self.scaled_hard(x)) / SIGHT).powi(2),
+            _ => self.gamma(x),
+        }
+    }
+
     /// Where on a ray of the obstacle's frame, a unit vector, Gamma (hard) or Gamma_k (soft) has a value.
     pub(super) fn reach(&self, ray: &DVector<f64>, gamma: f64, soft: bool) -> f64 {
         let scale = if soft { &self.soft } else { &self.hard };
@@ -189,6 +200,11 @@ impl Body {
     /// Direction of the first axis in the x-y plane, rad.
     pub(super) fn heading(&self) -> f64 {
         self.rotation[(1, 0)].atan2(self.rotation[(0, 0)])
+    }
+
+    /// A vector of the obstacle's frame in the world's; of a longer one what there is room for.
+    pub(super) fn in_world(&self, own: &[f64]) -> DVector<f64> {
+        &self.rotation * DVector::from_fn(self.rotation.nrows(), |i, _| own[i])
     }
 
     /// v + w x (x - c) + b n.

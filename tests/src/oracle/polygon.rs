@@ -10,6 +10,10 @@ use super::shape::turned_right;
 
 /// Share of an edge over which its slope passes into that of the neighbour.
 const BLEND: f64 = 0.2;
+/// What the neighbour's gauge may fall by along that share.
+const FALL: f64 = 0.8;
+/// The gauge of every edge up to which the whole is in sight.
+pub(super) const SIGHT: f64 = 0.8;
 
 /// A polygon, checked.
 pub(super) struct Star {
@@ -61,6 +65,21 @@ impl Star {
         &self.slopes
     }
 
+    /// The largest of what the lines of the edges make of a point; up to 0.8 all is in sight from there.
+    pub(super) fn beyond(&self, y: &DVector<f64>) -> f64 {
+        self.slopes.iter().map(|slope| slope.dot(y)).fold(0.0, f64::max)
+    }
+
+    /// Over which share of the i-th edge the slope of the j-th passes into its own.
+    fn band(&self, i: usize, j: usize) -> f64 {
+        let n = self.corners.len();
+        let ends = [&self.corners[i], &self.corners[(i + 1) % n]];
+        // Of both ends one is the corner between them, where it is 1.
+        let gauges = ends.map(|end| self.slopes[j].dot(end));
+        let far = if (j + 1) % n == i { gauges[1] } else { gauges[0] };
+        if far < 1.0 { BLEND.min(FALL / (1.0 - far)) } else { BLEND }
+    }
+
     pub(super) fn at(&self, y: &DVector<f64>) -> StarPoint {
         let n = self.corners.len();
         let mut best = (f64::NEG_INFINITY, 0, 0.0, 0.0);
@@ -79,11 +98,11 @@ impl Star {
             return StarPoint { gauge: 0.0, blended: DVector::zeros(2) };
         }
         let t = second / gauge;
-        let before = 0.5 * (1.0 - t / BLEND).max(0.0);
-        let after = 0.5 * (1.0 - (1.0 - t) / BLEND).max(0.0);
-        let blended = &self.slopes[i] * (1.0 - before - after)
-            + &self.slopes[(i + n - 1) % n] * before
-            + &self.slopes[(i + 1) % n] * after;
+        let (last, next) = ((i + n - 1) % n, (i + 1) % n);
+        let before = 0.5 * (1.0 - t / self.band(i, last)).max(0.0);
+        let after = 0.5 * (1.0 - (1.0 - t) / self.band(i, next)).max(0.0);
+        let blended =
+            &self.slopes[i] * (1.0 - before - after) + &self.slopes[last] * before + &self.slopes[next] * after;
         StarPoint { gauge, blended }
     }
 }

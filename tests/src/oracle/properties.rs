@@ -10,7 +10,7 @@ use super::geometry::{length, rotation_matrix, turned_about_z};
 use super::random_scene::{PointKind, RandomScene, Recipe, generate, generate_from};
 use super::{
     Evaluation, ObstacleView, OracleLimits, OracleMethod, OracleMotion, OracleObstacle, OracleRotation, OracleScene,
-    OracleShape, OracleSpin, OracleSteering, evaluate,
+    OracleShape, OracleSpin, OracleSteering, evaluate, reference_in_world,
 };
 
 fn norm(v: &[f64]) -> f64 {
@@ -159,13 +159,12 @@ proptest! {
     fn a_single_obstacle_is_the_closed_form(seed: u64, dimension in 2_usize..=3) {
         let random = generate_from(&Recipe { obstacles: 1..=1, scans: 0.0, ..Recipe::new(dimension) }, seed, 3);
         let obstacle = &random.scene.obstacles[0];
-        let rotation = rotation_matrix(obstacle.rotation, dimension).unwrap();
         for (x, seen) in settled_points(&random) {
             let v = |values: &[f64]| DVector::from_column_slice(values);
             let s = v(&seen.obstacles[0].surface_velocity);
             let u = v(&seen.nominal) - &s;
             let n = v(&seen.obstacles[0].normal);
-            let r = v(&x) - v(&obstacle.center) - &rotation * v(&obstacle.reference);
+            let r = v(&x) - v(&reference_in_world(&random.scene, 0).unwrap());
             let r = if obstacle.wall { -r } else { r };
             let cosine = n.dot(&r) / length(&r);
             let sum = |v: &DVector<f64>| v.iter().map(|c| c.abs()).sum::<f64>();

@@ -15,6 +15,8 @@ struct Compared {
     free: usize,
     changed: usize,
     infeasible: usize,
+    /// Where the half-spaces leave nothing, and yet a way out was found.
+    others: usize,
     /// Where only the end of the step was looked at.
     ends: usize,
 }
@@ -28,7 +30,7 @@ fn compare<const D: usize>(seed: u64, random: &RandomScene, dt: f64, compared: &
     for (obstacle, age) in next.obstacles.iter_mut().zip(ages) {
         // One may come of age within the step.
         obstacle.aged = rate * (age + dt - time_to_live).max(0.0);
-        obstacle.ageing = if age + dt > *time_to_live { *rate } else { 0.0 };
+        obstacle.ageing = if age + dt >= *time_to_live { *rate } else { 0.0 };
     }
     for point in &random.points {
         let wanted = evaluate(&scene, &point.x, None).unwrap();
@@ -50,7 +52,13 @@ fn compare<const D: usize>(seed: u64, random: &RandomScene, dt: f64, compared: &
         }
         let theirs = guarded(&spaces, &point.x, &wanted.limited, speed, alpha, dt);
         let Some(best) = theirs.velocity else {
-            assert!(command.status.contains(Status::INFEASIBLE), "{}", place());
+            if !command.status.contains(Status::INFEASIBLE) {
+                // Another way out was found.
+                let ends = violations(&next, &point.x, &u, dt).unwrap();
+                assert!(ends.iter().all(|violation| violation.gamma > 1.0 - 1e-6), "{}: {ends:?}", place());
+                compared.others += 1;
+                continue;
+            }
             let missed = Guarded::missed(&spaces, &point.x, &u, alpha, dt);
             assert!((missed - theirs.violation).abs() < ALLOWED * (1.0 + missed), "{} {missed} {theirs:?}", place());
             compared.infeasible += 1;
@@ -104,13 +112,13 @@ fn compare_all(recipe: impl Fn(usize) -> Recipe, seeds: std::ops::Range<u64>, st
 #[test]
 fn the_guard_is_the_nearest_velocity_among_things_at_rest() {
     let still = |d| Recipe { moving: 0.0, growing: 0.0, drifting: 0.0, ..Recipe::new(d) };
-    let Compared { free, changed, infeasible, ends } = compare_all(still, 0..300, [0.01, 0.1]);
+    let Compared { free, changed, infeasible, others: _, ends } = compare_all(still, 0..300, [0.01, 0.1]);
     assert!(free > 2000 && changed > 500 && infeasible > 20 && ends > 1000);
 }
 
 #[test]
 fn the_guard_looks_one_sample_ahead_among_moving_things() {
     let moving = |d| Recipe { moving: 1.0, growing: 0.5, ..Recipe::new(d) };
-    let Compared { free, changed, infeasible, ends } = compare_all(moving, 1000..1300, [0.002, 0.01]);
+    let Compared { free, changed, infeasible, others: _, ends } = compare_all(moving, 1000..1300, [0.002, 0.01]);
     assert!(free > 2000 && changed > 500 && infeasible > 20 && ends > 1000);
 }

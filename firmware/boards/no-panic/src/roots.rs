@@ -2,6 +2,7 @@
 
 use core::hint::black_box;
 use pliant_core::ds::{CertificateError, ModelError};
+use pliant_core::passive::{Interaction, Passive, PassiveError, Tank};
 use pliant_core::scalar::Fixed;
 use pliant_core::{
     Certified, Command, Component, Controller, LpvDs, Matrix, Obstacle, ObstacleError, ObstacleSpec, RobotState,
@@ -15,6 +16,9 @@ pub fn keep() {
     controller::<f32, 2, 64>();
     controller::<f32, 3, 64>();
     controller::<Fixed, 2, 8>();
+    controller::<Fixed, 3, 8>();
+    passive::<f32, 3>();
+    passive::<Fixed, 3>();
     black_box(control as fn(&mut Control, u32));
     black_box(device as fn(&mut Device, u32, &mut [u8; FRAME_MAX]) -> usize);
     black_box(frame as fn(&mut Device, &[u8], &mut [u8; FRAME_MAX]) -> usize);
@@ -37,6 +41,29 @@ fn controller<S: Scalar, const D: usize, const CAP: usize>() {
     black_box(skill::<S, D> as fn(&Vector<S, D>, &Matrix<S, D>, &[Component<S, D>]) -> Result<LpvDs<S, D>, ModelError>);
     black_box(obstacle::<S, D> as fn(&ObstacleSpec<S, D>) -> Result<Obstacle<S, D>, ObstacleError>);
     black_box(scan::<S, D> as fn(&[Vector<S, D>], S) -> Result<Scan<S, D>, ScanError>);
+}
+
+fn passive<S: Scalar, const D: usize>() {
+    black_box(
+        step::<S, D>
+            as fn(
+                &Passive<S>,
+                &mut Tank<S>,
+                &Vector<S, D>,
+                &Vector<S, D>,
+                S,
+            ) -> Result<Interaction<S, D>, PassiveError>,
+    );
+}
+
+fn step<S: Scalar, const D: usize>(
+    passive: &Passive<S>,
+    tank: &mut Tank<S>,
+    robot_velocity: &Vector<S, D>,
+    wanted: &Vector<S, D>,
+    dt: S,
+) -> Result<Interaction<S, D>, PassiveError> {
+    passive.step(tank, robot_velocity, wanted, dt)
 }
 
 fn tick<S: Scalar, const D: usize, const CAP: usize>(

@@ -225,7 +225,9 @@ impl Check<'_> {
             ObstacleError::Reference => {
                 let at = file.reference.as_ref().map_or(span.clone(), |r| r.span());
                 let problem = match (&obstacle.shape, obstacle.wall) {
-                    (Shape::Polygon { .. }, _) => "does not see the whole polygon from inside",
+                    (Shape::Polygon { .. }, _) => {
+                        "does not see the whole polygon from inside, with a fifth of the centre's distance from the line of every edge to spare"
+                    }
                     (_, true) => "is outside the free space",
                     (_, false) => "is outside the hard core",
                 };
@@ -295,7 +297,7 @@ impl Check<'_> {
             if last.shape.extent().max() > RANGE {
                 return Err(error(format!("makes the core larger than {RANGE} m before the timeout of {timeout} s")));
             }
-            // The only thing that does not grow along is the reference point.
+            // The reference point shrinks along, but near a rounded corner it may still end outside.
             let refused = (1..=16).find(|i| self.refusal(obstacle, timeout * f64::from(*i) / 16.0).is_some());
             if refused.is_some() {
                 let problem = "leaves the reference point outside the core before the timeout";

@@ -51,8 +51,8 @@ prop_compose! {
             }
             _ => None,
         };
-        // Only of an ellipsoid is it known what is inside, and one that shrinks might lose it.
-        let reference = if shape.is_some() || growth < 0.0 { [0.0; 3] } else { point };
+        // Only of an ellipsoid is it known what is inside.
+        let reference = if shape.is_some() { [0.0; 3] } else { point };
         let wall = wall && shape.is_some() && thin > 0.01;
         // A factor an axis would uncover parts of a polygon.
         let polygonal = (kind, spatial) == (4, false);

@@ -92,7 +92,6 @@ const WRONG: &[Case] = &[
     // growth
     (ROOM, "growth = 0.0", "growth = 101", 11, "obstacle.growth", "too large"),
     (ROOM, "growth = 0.0", "growth = 50.0", 11, "obstacle.growth", "larger than 1000 m before the timeout"),
-    (ROOM, "growth = 0.0\nreference = [0.0, 0.0]", "growth = -0.1\nreference = [0.2, 0.0]", 11, "obstacle.growth", "reference point"),
 ];
 
 #[test]
@@ -101,6 +100,15 @@ fn what_is_wrong_with_a_shape_is_named() {
         parse(good).unwrap();
     }
     refused(WRONG);
+}
+
+#[test]
+fn a_reference_point_shrinks_with_its_core() {
+    let scene =
+        parse(&ROOM.replace("growth = 0.0\nreference = [0.0, 0.0]", "growth = -0.01\nreference = [0.2, 0.0]")).unwrap();
+    let room = scene.obstacles()[0].at(10.0);
+    let core = room.to_core::<f64, 2>().unwrap();
+    assert!((core.reference().x - 0.2 * room.shape.extent().x / 0.5).abs() < 1e-12, "{}", core.reference());
 }
 
 #[test]

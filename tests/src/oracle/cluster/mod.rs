@@ -12,7 +12,7 @@ use super::geometry::{length, vector};
 use super::obstacle::Body;
 use super::scene::OracleScene;
 pub use overlap::Sharing;
-pub(super) use overlap::{common, through};
+pub(super) use overlap::{common, in_sight, sight_and_core, through};
 
 /// Obstacles whose cores overlap, directly or through others.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +21,7 @@ pub struct OracleCluster {
     pub members: Vec<usize>,
     /// Which of them overlap, the smaller first.
     pub links: Vec<(usize, usize)>,
-    /// Whether all of them have a point in common; never with a wall.
+    /// Whether all of them have a point in common that is in sight of every polygon; never with a wall.
     pub common: Sharing,
     /// Whether one of them is a wall.
     pub wall: Option<usize>,
@@ -76,7 +76,7 @@ impl OracleCluster {
     pub fn check(&self, own: &OracleScene, scene: &OracleScene) -> Result<(), String> {
         let before = bodies(own).map_err(|e| e.to_string())?;
         let bodies = bodies(scene).map_err(|e| e.to_string())?;
-        let inside = |point: &DVector<f64>, n: usize| bodies[n].gamma(point) <= 1.0 + 1e-9;
+        let inside = |point: &DVector<f64>, n: usize| bodies[n].sight(point) <= 1.0 + 1e-9;
         let shared = self.wall.is_none() && {
             let first = bodies[self.members[0]].reference();
             let same = |n: &usize| length(&(bodies[*n].reference() - &first)) < 1e-9 * (1.0 + length(&first));
@@ -101,7 +101,9 @@ impl OracleCluster {
             }
             let wrong = self.parents(root).into_iter().find_map(|(child, parent)| {
                 let parent = parent?;
-                let with = |other: usize| child::check(&bodies[child], &bodies[other], &before[other].reference());
+                let with = |other: usize| {
+                    child::check(&bodies[child], &before[child], &bodies[other], &before[other].reference())
+                };
                 // In a ring the page does not say which way round.
                 let around = || self.members.iter().any(|other| self.linked(child, *other) && with(*other).is_ok());
                 match with(parent) {
@@ -183,7 +185,7 @@ pub fn clusters(scene: &OracleScene) -> Result<Option<Vec<OracleCluster>>, Oracl
         let wall = members.iter().copied().find(|n| bodies[*n].wall);
         let all: Vec<&Body> = members.iter().map(|n| &bodies[*n]).collect();
         found.push(OracleCluster {
-            common: if wall.is_some() { Sharing::Apart } else { common(&all) },
+            common: if wall.is_some() { Sharing::Apart } else { in_sight(&all) },
             links: links.iter().copied().filter(|(a, _)| group[*a] == name).collect(),
             members,
             wall,
@@ -223,7 +225,9 @@ pub fn refer(scene: &mut OracleScene, n: usize, place: &[f64]) -> Result<(), Ora
     let bodies = bodies(scene)?;
     let body = bodies.get(n).ok_or(OracleError::Value("number of an obstacle"))?;
     if length(&(&place - body.reference())) > 1e-12 * (1.0 + length(&place)) {
-        scene.obstacles[n].reference = body.local(&place).as_slice().to_vec();
+        // As the page takes it in, where the core has shrunk.
+        let local = body.local(&place).zip_map(&body.hard, |r, scale| r / scale.min(1.0));
+        scene.obstacles[n].reference = local.as_slice().to_vec();
     }
     Ok(())
 }

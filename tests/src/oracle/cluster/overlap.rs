@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::super::geometry::{length, tangents, unit};
 use super::super::guard::{Bound, inner_ball, pieces};
 use super::super::obstacle::Body;
+use super::super::polygon::SIGHT;
 use super::super::shape::Shape;
 
 /// A depth of less than this, as a share of the shapes' size, is too little to tell.
@@ -51,8 +52,42 @@ fn parts(body: &Body) -> Vec<Piece<'_>> {
     }
 }
 
+/// Where the reference point of a core may be.
+fn sight(body: &Body) -> Vec<Piece<'_>> {
+    let Shape::Star(star) = &body.shape else {
+        return parts(body);
+    };
+    let planes = star.slopes().iter().map(|slope| {
+        let out = &body.rotation * slope.component_div(&body.hard);
+        let steep = length(&out);
+        let normal = -out / steep;
+        Bound { least: normal.dot(&body.center) - SIGHT / steep, normal }
+    });
+    vec![Piece::Part { planes: planes.collect(), size: body.bound() }]
+}
+
 /// Whether the cores of some obstacles, none of them a wall, have a point in common.
 pub(in super::super) fn common(bodies: &[&Body]) -> Sharing {
+    together(bodies, |body| parts(body))
+}
+
+/// Whether they have one where each may have its reference point.
+pub(in super::super) fn in_sight(bodies: &[&Body]) -> Sharing {
+    together(bodies, |body| sight(body))
+}
+
+/// Whether a parent's core reaches where a child, which is no wall, may have its reference point.
+pub(in super::super) fn sight_and_core(child: &Body, parent: &Body) -> Sharing {
+    if parent.wall {
+        return beyond(parent, child, &|ray| match &child.shape {
+            Shape::Star(star) => SIGHT / star.beyond(&ray.component_div(&child.hard)),
+            _ => child.reach(ray, 1.0, false),
+        });
+    }
+    together(&[child, parent], |body| if std::ptr::eq(body, child) { sight(body) } else { parts(body) })
+}
+
+fn together<'a>(bodies: &[&'a Body], parts: impl Fn(&'a Body) -> Vec<Piece<'a>>) -> Sharing {
     for (i, a) in bodies.iter().enumerate() {
         for b in &bodies[i + 1..] {
             if length(&(&a.center - &b.center)) > (a.bound() + b.bound()) * (1.0 + CLEAR) {
@@ -115,12 +150,17 @@ fn least(chosen: &[&Piece], bodies: &[&Body]) -> Sharing {
 
 /// Whether a core sticks out of a wall.
 pub(in super::super) fn through(wall: &Body, body: &Body) -> Sharing {
+    beyond(wall, body, &|ray| body.reach(ray, 1.0, false))
+}
+
+/// The same with a reach of the body's along a ray of its frame.
+fn beyond(wall: &Body, body: &Body, reach: &dyn Fn(&DVector<f64>) -> f64) -> Sharing {
     let away = length(&(&body.center - &wall.center)) + body.bound();
     if away < inner_ball(wall) * (1.0 - CLEAR) {
         return Sharing::Apart;
     }
     let d = body.center.len();
-    let out = |ray: &DVector<f64>| wall.gauge(&body.world(&(ray * body.reach(ray, 1.0, false))));
+    let out = |ray: &DVector<f64>| wall.gauge(&body.world(&(ray * reach(ray))));
     let (mut best, mut ray) = (0.0, DVector::zeros(d));
     for candidate in rays(d) {
         let value = out(&candidate);

@@ -18,6 +18,9 @@ const ROUNDING: f64 = 16.0;
 /// Nor less than this, m.
 const SKIN: f64 = 0.0000152587890625;
 
+/// The share of what is lacking that is made up for in the outer half of the skin.
+const HOLD: f64 = 0.06;
+
 /// A half-space of displacements: n.delta >= -gap.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HalfSpace {
@@ -34,8 +37,7 @@ pub struct HalfSpace {
 pub struct HalfSpaces {
     /// In the order of the obstacles, the scan last.
     pub all: Vec<HalfSpace>,
-    /// False where the page does not determine one: at the centre of an obstacle, in a wall whose rounding is shorter than a
-    /// step, and of a moving obstacle as far away as counts.
+    /// False where the page does not determine one: at the centre of an obstacle, in a wall where a step is longer than its rounding or what is left after the bend, and of a moving obstacle as far away as counts.
     pub complete: bool,
     /// False where there is a polygon: behind which of the sides of its pieces is kept is free. Those given are one such choice,
     /// with a triangle for each edge as pieces.
@@ -128,7 +130,10 @@ pub fn half_spaces(next: &OracleScene, x: &[f64], dt: f64) -> Result<HalfSpaces,
                 } else if body.wall {
                     let steepest = step / axes.component_mul(&body.hard).min();
                     let bend = 1.2 * 0.5 * exponent * (exponent - 1.0) * steepest.powi(2);
-                    push(n, &body.normal(&x), (1.0 - body.plain_gamma(&x) - bend) / steep);
+                    let left = 1.0 - body.plain_gamma(&x) - bend;
+                    // A step too long for the bend.
+                    complete &= left >= 0.0 || left + bend <= 0.0;
+                    push(n, &body.normal(&x), left / steep);
                 } else if steep == 0.0 {
                     complete = false;
                 } else {
@@ -208,9 +213,14 @@ fn bounds(spaces: &HalfSpaces, x: &[f64], alpha: f64, dt: f64) -> Vec<Bound> {
         .all
         .iter()
         .map(|space| {
-            let gap = space.gap - SKIN.max(ROUNDING * f64::EPSILON * size);
-            let least = if gap > 0.0 { -alpha * gap / dt } else { -gap / dt };
-            Bound { normal: DVector::from_column_slice(&space.normal), least }
+            let skin = SKIN.max(ROUNDING * f64::EPSILON * size);
+            let room = space.gap - skin;
+            let share = match room {
+                room if room > 0.0 => alpha,
+                _ if space.gap >= 0.5 * skin => HOLD,
+                _ => 1.0,
+            };
+            Bound { normal: DVector::from_column_slice(&space.normal), least: -share * room / dt }
         })
         .collect()
 }

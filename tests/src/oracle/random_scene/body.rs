@@ -126,7 +126,7 @@ fn set_growing(rng: &mut impl Rng, obstacle: &mut OracleObstacle, ageing: &Rando
     if obstacle.grown < -0.3 * least {
         (obstacle.growth, obstacle.grown) = (0.0, 0.0);
     }
-    if age > ageing.time_to_live {
+    if age >= ageing.time_to_live {
         obstacle.aged = ageing.rate * (age - ageing.time_to_live);
         obstacle.ageing = ageing.rate;
     }

@@ -117,7 +117,7 @@ fn what_has_grown_and_aged_has_done_so_since_its_age() {
         for (obstacle, age) in random.scene.obstacles.iter().zip(ages) {
             assert_eq!(obstacle.grown, obstacle.growth * age);
             assert_eq!(obstacle.aged, rate * (age - time_to_live).max(0.0));
-            assert_eq!(obstacle.ageing, if age > time_to_live { *rate } else { 0.0 });
+            assert_eq!(obstacle.ageing, if age >= time_to_live { *rate } else { 0.0 });
             assert!(*age == 0.0 || obstacle.spin == OracleSpin::Planar(0.0));
             old += usize::from(*age > *time_to_live);
         }

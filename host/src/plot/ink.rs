@@ -1,0 +1,54 @@
+//! Shapes on the page.
+
+use nalgebra::{Point2, Vector2};
+
+use super::figure::{Axes, Svg};
+use super::outline::Region;
+
+/// A dashed line with an arrowhead.
+pub(super) fn draw_track(svg: &mut Svg, axes: &Axes, track: &[Point2<f64>], style: &str, head: &str) {
+    let track: Vec<_> = track.iter().map(|p| axes.pixel(p)).collect();
+    if let [.., from, tip] = track[..] {
+        svg.path(track.iter().copied(), false, style);
+        svg.arrowhead(tip, &(tip - from), 8.0, head);
+    }
+}
+
+/// A closed line on the page.
+pub(super) fn ring(polygon: &[Point2<f64>], axes: &Axes) -> Vec<Point2<f64>> {
+    let closed: Vec<_> = polygon.iter().chain(polygon.first()).map(|p| axes.pixel(p)).collect();
+    let mut ring = thinned(&closed, 0.03);
+    ring.pop();
+    ring
+}
+
+/// A region on the page: what is outside of a line ends beyond the axes, where nothing is seen.
+pub(super) fn rings(area: &Region, axes: &Axes) -> Vec<Vec<Point2<f64>>> {
+    let mut rings = vec![ring(&area.ring, axes)];
+    if area.outside {
+        let room = Vector2::new(10.0, 10.0);
+        let (low, high) = (axes.corner - room, axes.end() + room);
+        rings.push(vec![low, Point2::new(high.x, low.y), high, Point2::new(low.x, high.y)]);
+    }
+    rings
+}
+
+/// Without points that are within `tolerance` pixels of the line through their neighbours.
+pub(super) fn thinned(points: &[Point2<f64>], tolerance: f64) -> Vec<Point2<f64>> {
+    let Some((&first, &last)) = points.first().zip(points.last()) else {
+        return Vec::new();
+    };
+    let mut kept = vec![first];
+    let mut anchor = 0;
+    for i in 2..points.len() {
+        let chord: Vector2<f64> = points[i] - points[anchor];
+        let off = |p: &Point2<f64>| chord.perp(&(p - points[anchor])).abs();
+        let length = chord.norm();
+        if i - anchor > 60 || points[anchor + 1..i].iter().any(|p| off(p) > tolerance * length) {
+            anchor = i - 1;
+            kept.push(points[anchor]);
+        }
+    }
+    kept.push(last);
+    kept
+}
