@@ -208,3 +208,19 @@ fn squeezed_by_two_the_guard_says_so() {
     let (_, _, flags) = drive(&mut c, V::zeros(), 0.06);
     assert!(flags.contains(Status::INFEASIBLE), "{flags:?}");
 }
+
+#[test]
+fn one_ball_alone_bends_the_flow_as_in_the_book() {
+    // Potential flow round a cylinder: M applied to a uniform flow.
+    let mut c: Controller<f64, 2, 16> =
+        Controller::new(Motion::linear(V::new(900.0, 0.0), 1.0).unwrap(), Settings::default());
+    put(&mut c, &[ellipse(0.0, 0.0, 0.1, 0.1, 0.0)]);
+    for i in 0..100 {
+        let angle = f64::from(i) * 0.063;
+        let x = V::new(angle.cos(), angle.sin()) * 0.15;
+        let v = c.modulated(&RobotState::new(x).unwrap()) / 900.0;
+        let (s, ratio) = ((2.0 * angle).sin_cos(), (0.1f64 / 0.15).powi(2));
+        let book = V::new(1.0 - ratio * s.1, -ratio * s.0);
+        assert!((v - book).norm() < 1e-3, "{v} {book}");
+    }
+}

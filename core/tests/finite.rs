@@ -5,11 +5,11 @@ mod world;
 
 use pliant_core::scalar::Fixed;
 use pliant_core::{
-    Component, Controller, LpvDs, Matrix, Motion, Obstacle, ObstacleSpec, RobotState, Scalar, Scan, Settings, Shape,
-    Status, SteeringPolicy, Vector, rotation,
+    Component, Controller, Limits, LpvDs, Matrix, Motion, Obstacle, ObstacleSpec, RobotState, Scalar, Scan, Settings,
+    Shape, Status, SteeringPolicy, Vector, rotation,
 };
 use rand::Rng;
-use world::{Random, random, samples, vector};
+use world::{Random, is_long, random, share, vector};
 
 /// A length between the smallest and the largest there are.
 fn length<S: Scalar>(r: &mut Random) -> f64 {
@@ -97,10 +97,99 @@ fn motion<S: Scalar, const D: usize>(r: &mut Random, x: &Vector<S, D>) -> Motion
     Motion::Lpv(LpvDs::new(attractor, Matrix::identity(), &parts).unwrap().certify().unwrap())
 }
 
+/// How often each degenerate input was really there.
+#[derive(Default, Debug)]
+struct Tally {
+    ticks: u64,
+    at_center: u64,
+    at_reference: u64,
+    /// Gamma or Gamma_k is one but for 64 units of rounding.
+    on_boundary: u64,
+    on_soft_boundary: u64,
+    /// f = 0
+    at_rest: u64,
+    twins: u64,
+    /// Gamma is infinite or at the end of the range, or beyond what is looked at.
+    overflow: u64,
+    far: u64,
+    /// A soft layer that lies inside its own safety factor.
+    swallowed: u64,
+}
+
+impl Tally {
+    fn count<S: Scalar, const D: usize>(&mut self, c: &Controller<S, D, 8>, x: &Vector<S, D>) {
+        let one = |gamma: S| (gamma - S::one()).abs() <= S::EPSILON * S::from_f64(64.0);
+        let entries: Vec<&Obstacle<S, D>> = c.table().iter().map(|e| e.obstacle()).collect();
+        let any = |is: &dyn Fn(&Obstacle<S, D>) -> bool| u64::from(entries.iter().any(|o| is(o)));
+        self.ticks += 1;
+        self.at_center += any(&|o| o.spec().center == *x);
+        self.at_reference += any(&|o| o.reference() == *x && o.spec().center != *x);
+        self.on_boundary += any(&|o| one(o.gamma(x)));
+        self.on_soft_boundary += any(&|o| one(o.gamma_soft(x)) && o.gamma(x) > S::one());
+        self.overflow += any(&|o| !(o.gamma(x) < S::MAX));
+        self.far += any(&|o| !(o.gamma(x) < S::FAR));
+        let swallows = |o: &Obstacle<S, D>| (0..D).all(|i| o.spec().margin[i] >= o.spec().soft_ratio[i]);
+        self.swallowed += any(&|o| swallows(o) && o.spec().soft_ratio.iter().any(|rho| *rho > S::one()));
+        let same = |i: usize| entries.iter().skip(i + 1).any(|o| o.spec() == entries[i].spec());
+        self.twins += u64::from((0..entries.len()).any(same));
+        let still = c.motion().relative(x) + c.motion().drift();
+        self.at_rest += u64::from(still.iter().all(|f| *f == S::zero()));
+    }
+
+    fn check(&self, huge_fits: bool) {
+        println!("{self:?}");
+        let often =
+            |n: u64, share: u64| assert!(n * share >= self.ticks || !is_long(), "not tried often enough: {self:?}");
+        for n in [self.at_center, self.at_reference, self.on_boundary, self.on_soft_boundary, self.at_rest] {
+            often(n, 100);
+        }
+        for n in [self.twins, self.far, self.swallowed] {
+            often(n, 20);
+        }
+        // Of f64 no Gamma there may be reaches the end: (2000 m / 0.1 mm)^16.
+        assert!(huge_fits || self.overflow * 1000 >= self.ticks || !is_long(), "{self:?}");
+    }
+}
+
+fn limits<S: Scalar>(r: &mut Random) -> Limits<S> {
+    let speed = if r.random_bool(0.5) { 0.5 } else { 10f64.powf(r.random_range(-3.0..2.0)) };
+    let acceleration = r.random_bool(0.3).then(|| S::from_f64(10f64.powf(r.random_range(-1.0..3.0))));
+    Limits { speed: S::from_f64(speed), acceleration, ..Limits::default() }
+}
+
+fn controller<S: Scalar, const D: usize>(
+    r: &mut Random,
+    obstacles: Vec<Obstacle<S, D>>,
+    x: &Vector<S, D>,
+) -> Controller<S, D, 8> {
+    let steering = if r.random_bool(0.5) {
+        SteeringPolicy::fixed(S::from_f64(r.random_range(-4.0..4.0)))
+    } else {
+        SteeringPolicy::WithFlow { beta: S::one() }
+    };
+    let gain = S::from_f64(r.random_range(0.0..10.0));
+    let mut settings = Settings { steering, gain, limits: limits(r), ..Settings::default() };
+    if r.random_bool(0.3) {
+        settings.guard = None;
+    }
+    let mut controller = Controller::new(motion(r, x), settings);
+    for (id, o) in obstacles.into_iter().enumerate() {
+        controller.upsert(id as u16, o, S::from_f64(r.random_range(0.0..2.0))).unwrap();
+    }
+    if r.random_bool(0.2) {
+        let points = [*x, vector(&anywhere(r)), vector(&anywhere(r))];
+        controller.set_scan(Scan::new(&points, S::from_f64(length::<S>(r).min(99.0))).unwrap(), S::zero());
+    }
+    if r.random_bool(0.1) {
+        controller.aim(&vector(&anywhere(r)), &vector(&[1.0, -1.0, 0.5]));
+    }
+    controller
+}
+
 fn campaign<S: Scalar, const D: usize>(seed: u64) {
     let r = &mut random(seed);
-    let mut tried = 0;
-    while tried < samples(250_000) {
+    let mut tally = Tally::default();
+    while tally.ticks < share(2) {
         let mut obstacles: Vec<Obstacle<S, D>> = (0..r.random_range(1..7)).filter_map(|_| obstacle(r)).collect();
         let Some(first) = obstacles.first().cloned() else { continue };
         if r.random_bool(0.3) {
@@ -109,41 +198,45 @@ fn campaign<S: Scalar, const D: usize>(seed: u64) {
         let x = place(r, &first);
         // A place of an obstacle may be out of range itself.
         let Some(state) = RobotState::new(x) else { continue };
-        let steering = if r.random_bool(0.5) {
-            SteeringPolicy::fixed(S::from_f64(r.random_range(-4.0..4.0)))
-        } else {
-            SteeringPolicy::WithFlow { beta: S::one() }
-        };
-        let mut settings = Settings { steering, gain: S::from_f64(r.random_range(0.0..10.0)), ..Settings::default() };
-        if r.random_bool(0.3) {
-            settings.guard = None;
-        }
-        let mut controller: Controller<S, D, 8> = Controller::new(motion(r, &x), settings);
-        for (id, o) in obstacles.into_iter().enumerate() {
-            controller.upsert(id as u16, o, S::from_f64(r.random_range(0.0..2.0))).unwrap();
-        }
-        if r.random_bool(0.2) {
-            let points = [x, vector(&anywhere(r)), vector(&anywhere(r))];
-            controller.set_scan(Scan::new(&points, S::from_f64(length::<S>(r).min(99.0))).unwrap(), S::zero());
-        }
-        if r.random_bool(0.1) {
-            controller.aim(&vector(&anywhere(r)), &vector(&[1.0, -1.0, 0.5]));
-        }
+        let mut controller = controller(r, obstacles, &x);
+        let Limits { speed, acceleration, .. } = controller.settings().limits;
+        let (speed, eps) = (speed.to_f64(), S::EPSILON.to_f64());
+        // In fixed point squares of speeds have a step too: |u|^2 to one step is |u| to step/(2 |u|), and two squares are rounded.
+        let step = S::rounding(S::zero()).to_f64();
+        let fastest = speed * (1.0 + 1e-5) + 8.0 * eps.min(speed) + 8.0 * step + step / speed;
         let mut here = Some(state);
+        let mut previous = Vector::<f64, D>::zeros();
         for dt in [0.001, 0.001, 0.1].into_iter().cycle().take(15) {
             let state = here.unwrap_or(state);
-            tried += 1;
+            tally.count(&controller, state.position());
             let before = controller.clone();
             let command = controller.tick(&state, S::from_f64(dt));
             let u = command.velocity.map(|v| v.to_f64());
             let what = || format!("{command:?}\nat {state:?}\nof {:?}\n{before:?}", before.evaluate(&state));
             assert!(command.velocity.iter().all(|v| v.is_finite()), "{}", what());
-            assert!(u.norm() <= 0.5 * (1.0 + 1e-5) + 8.0 * S::EPSILON.to_f64(), "{}", what());
+            assert!(u.norm() <= fastest, "{} over {speed}: {}", u.norm(), what());
             assert!(command.gamma.is_finite() && !command.status.contains(Status::NOT_FINITE), "{}", what());
+            // The guard may change it by more.
+            if let Some(acceleration) = acceleration
+                && !command.status.contains(Status::GUARDED)
+            {
+                let most = (acceleration * S::from_f64(dt)).to_f64();
+                let rounding = 8.0 * (eps * speed + step);
+                assert!(
+                    (u - previous).norm() <= most * (1.0 + 1e-5) + rounding,
+                    "{} over {most} from {previous}{}",
+                    (u - previous).norm(),
+                    what()
+                );
+            }
+            previous = u;
             let somewhere = controller.table().iter().next().map(|e| place(r, e.obstacle()));
+            // Or where the motion ends.
+            let somewhere = if r.random_bool(0.1) { Some(controller.motion().attractor()) } else { somewhere };
             here = somewhere.and_then(RobotState::new);
         }
     }
+    tally.check(S::from_f64(1e300).to_f64() == 1e300);
 }
 
 macro_rules! campaigns {

@@ -9,7 +9,7 @@ use pliant_core::{
     Vector, rotation,
 };
 use rand::Rng;
-use world::{Kind, Random, random, samples};
+use world::{Kind, Random, random, share};
 
 type V = Vector<f64, 2>;
 
@@ -90,7 +90,7 @@ fn no_reference_point_is_lost_in_clusters_of_polygons() {
     let r = &mut random(2);
     let kind = Kind { obstacles: 6, speed: 0.0, walls: false, scans: false };
     let (mut polygons, mut common, mut flagged) = (0, 0, 0);
-    for n in 0..samples(20_000) / 10 {
+    for n in 0..share(500) {
         let mut c = controller(V::new(2.0, 0.0));
         let mut last: Option<Obstacle<f64, 2>> = None;
         for id in 0..r.random_range(2..=6) {
@@ -127,7 +127,7 @@ fn no_reference_point_is_lost_in_clusters_of_polygons() {
 #[test]
 fn what_shrinks_keeps_its_reference_point_inside() {
     let r = &mut random(4);
-    for n in 0..samples(20_000) / 10 {
+    for n in 0..share(500) {
         let kind = Kind { obstacles: 1, speed: 0.0, walls: false, scans: false };
         let Some(o) = world::obstacle::<f64, 2>(r, &kind) else { continue };
         let wall = r.random_bool(0.2) && !matches!(o.spec().shape, Shape::Polygon(_));

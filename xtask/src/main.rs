@@ -33,7 +33,8 @@ Usage: cargo xtask <task>
 Tasks:
   test                    set up, then run every check and every test; what CI runs
   setup                   install what the project needs and this machine lacks
-  campaign [--samples N]  the core's property campaigns, N samples each (10^8 by default; hours)
+  campaign [NAME ...] [--samples N]
+                          the core's property campaigns, or those named, N samples for each scalar type (10^8 by default; hours)
   bench                   time one velocity and count its instructions; installs Callgrind's parts if missing
   no-panic                show that the tick cannot panic, on either core
   size [--json]           text, data, bss and stack of the firmware

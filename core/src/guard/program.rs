@@ -100,7 +100,7 @@ fn within_ball<S: Scalar, const D: usize>(wanted: &Vector<S, D>, speed: S) -> (V
     };
     // A velocity just limited to this speed, longer only by rounding, is to stay what it is.
     let limit = speed + rounding(speed);
-    if goal.dot(&goal) <= limit * limit { (goal, goal) } else { (goal, goal * (speed / norm(&goal))) }
+    if norm(&goal) <= limit { (goal, goal) } else { (goal, goal * (speed / norm(&goal))) }
 }
 
 /// What rounding may do to a scalar product with a unit vector, for velocities of this size. Where the square of epsilon is
@@ -276,7 +276,8 @@ impl<S: Scalar, const D: usize> Programme<S, D> {
             Goal::Near(goal) => {
                 // Twice, for a goal far off is rounded to more than its part along a small flat may be.
                 let step = flat.along * (flat.along * goal);
-                if step.dot(&step) <= flat.radius * flat.radius {
+                // Not their squares: in fixed point those of a large speed do not fit, and those of a small one have no digits.
+                if norm(&step) <= flat.radius {
                     return flat.centre + step;
                 }
                 flat.direction(&step, S::zero())

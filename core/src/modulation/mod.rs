@@ -356,4 +356,6 @@ fn size<S: Scalar, const D: usize>(v: &[S; D]) -> S {
 }
 
 #[cfg(test)]
+mod closed_form;
+#[cfg(test)]
 mod tests;

@@ -9,15 +9,23 @@ use pliant_core::{
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+pub mod scene;
+
 pub type Random = ChaCha8Rng;
 
 pub fn random(seed: u64) -> Random {
     ChaCha8Rng::seed_from_u64(seed)
 }
 
-/// How many samples a campaign takes: PLIANT_SAMPLES, or this many.
-pub fn samples(default: u64) -> u64 {
-    std::env::var("PLIANT_SAMPLES").ok().and_then(|n| n.parse().ok()).unwrap_or(default)
+/// Samples of one test of a campaign that takes PLIANT_SAMPLES (a million, unless set) for each scalar type, in so many tests.
+pub fn share(tests: u64) -> u64 {
+    let all: u64 = std::env::var("PLIANT_SAMPLES").ok().and_then(|n| n.parse().ok()).unwrap_or(1_000_000);
+    all.div_ceil(tests)
+}
+
+/// Are there enough samples that rare cases must be among them?
+pub fn is_long() -> bool {
+    share(1) >= 1_000_000
 }
 
 pub fn vector<S: Scalar, const D: usize>(v: &[f64; 3]) -> Vector<S, D> {
@@ -28,11 +36,11 @@ pub fn numbers<S: Scalar, const D: usize>(v: &Vector<S, D>) -> Vector<f64, D> {
     v.map(|x| x.to_f64())
 }
 
-fn within(r: &mut Random, bound: f64) -> [f64; 3] {
+pub fn within(r: &mut Random, bound: f64) -> [f64; 3] {
     [(); 3].map(|()| r.random_range(-bound..bound))
 }
 
-fn turn<S: Scalar, const D: usize>(r: &mut Random) -> Matrix<S, D> {
+pub fn turn<S: Scalar, const D: usize>(r: &mut Random) -> Matrix<S, D> {
     let [x, y, z] = if D == 2 { [0.0, 0.0, 1.0] } else { within(r, 1.0) };
     let w = r.random_range(-1.0..1.0f64);
     let length = (w * w + x * x + y * y + z * z).sqrt().max(0.1);
@@ -114,7 +122,7 @@ pub fn obstacle<S: Scalar, const D: usize>(r: &mut Random, kind: &Kind) -> Optio
     Obstacle::new(spec).ok()
 }
 
-fn wall<S: Scalar, const D: usize>(r: &mut Random) -> Obstacle<S, D> {
+pub fn wall<S: Scalar, const D: usize>(r: &mut Random) -> Obstacle<S, D> {
     let half = Vector::<S, D>::from_fn(|_, _| S::from_f64(r.random_range(0.7..1.0f64)));
     let shape = match r.random_range(0..3u8) {
         0 => Shape::ellipsoid(half),
@@ -126,11 +134,20 @@ fn wall<S: Scalar, const D: usize>(r: &mut Random) -> Obstacle<S, D> {
 
 /// A stable motion: straight, or of some components by construction (A = -(rate I) + skew, so P = I proves it).
 pub fn motion<S: Scalar, const D: usize>(r: &mut Random) -> Motion<S, D> {
-    let attractor = vector(&within(r, 0.4));
+    let attractor = vector(&on_grid(within(r, 0.4)));
     if r.random_bool(0.4) {
         return Motion::linear(attractor, S::from_f64(r.random_range(0.2..5.0f64))).unwrap();
     }
-    let components: Vec<Component<S, D>> = (0..r.random_range(1..=8))
+    Motion::Lpv(LpvDs::new(attractor, Matrix::identity(), &components(r)).unwrap().certify().unwrap())
+}
+
+/// Multiples of 2^-12 m: within a few metres every number type holds them and their differences exactly.
+pub fn on_grid(x: [f64; 3]) -> [f64; 3] {
+    x.map(|x| (x * 4096.0).round() / 4096.0)
+}
+
+pub fn components<S: Scalar, const D: usize>(r: &mut Random) -> Vec<Component<S, D>> {
+    (0..r.random_range(1..=8))
         .map(|_| {
             let skew = spin::<S, D>(r, 2.0);
             let rate = r.random_range(0.5..3.0f64);
@@ -141,8 +158,7 @@ pub fn motion<S: Scalar, const D: usize>(r: &mut Random) -> Motion<S, D> {
                 a: skew - Matrix::identity() * S::from_f64(rate),
             }
         })
-        .collect();
-    Motion::Lpv(LpvDs::new(attractor, Matrix::identity(), &components).unwrap().certify().unwrap())
+        .collect()
 }
 
 pub fn settings<S: Scalar>(r: &mut Random) -> Settings<S> {

@@ -1,0 +1,197 @@
+//! Along random lines the velocity has no jump, at shells, overlaps or anywhere else outside of cores; and what jumps is found.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
+
+mod world;
+
+use pliant_core::scalar::Fixed;
+use pliant_core::{Controller, Obstacle, RobotState, Scalar, Settings, Status, SteeringPolicy, Vector};
+use rand::Rng;
+use world::scene::{MOVING, STILL, controller, place, some};
+use world::{Kind, Random, is_long, motion, numbers, random, share};
+
+/// c, m/s: how far the paper's steering jumps at a shell.
+const GAIN: f64 = 1.0;
+/// Samples on a line.
+const POINTS: u32 = 200;
+/// Between them, m.
+const STEP: f64 = 1e-3;
+/// Closer to a core than this Gamma the weights of overlapping cores become as steep as one likes: 1/(Gamma - 1).
+const NEAREST: f64 = 1.05;
+/// A bound on the slope, 1/s. Across a shell the push rises from 0 to 1 m/s while Gamma_k falls by 0.1, and the slope of Gamma_k is 2p/a <= 6/0.045
+/// on the thinnest body: 1330. Between two cores the weights turn from one to the other while Gamma - 1 doubles, by at most 6/0.045/(4 * 0.05) = 670 a
+/// metre, of velocities
+/// that differ by |f| or so; with several at a time, and f of up to 5 m/s, no more than:
+const SLOPE: f64 = 4000.0;
+
+struct Line<'a, S: Scalar, const D: usize> {
+    controller: &'a Controller<S, D, 16>,
+    from: Vector<f64, D>,
+    way: Vector<f64, D>,
+}
+
+impl<S: Scalar, const D: usize> Line<'_, S, D> {
+    fn velocity(&self, along: f64) -> Option<Vector<f64, D>> {
+        let stages = self.controller.evaluate(&RobotState::new((self.from + self.way * along).map(S::from_f64))?);
+        // Where g.r vanishes, as beside a polygon whose shared reference point does not see all of it, the method has a pole: ten times as fast as f is
+        // near it, and the status says where it is.
+        let (f, u) = (numbers(&stages.nominal).norm(), numbers(&stages.modulated).norm());
+        let pole = stages.status.contains(Status::REFERENCE) || u > 10.0 * (f + 1.0);
+        (stages.gamma.to_f64() > NEAREST && !pole).then(|| numbers(&stages.adapted))
+    }
+
+    /// A bound on the slope here, 1/s: where a reference point is seen slantingly (a shared one, or a polygon's) the flow past its obstacle goes
+    /// with |g| |r| / (g.r), and the slope with its square.
+    fn slope(&self, along: f64) -> f64 {
+        let x = (self.from + self.way * along).map(S::from_f64);
+        let slant = |o: &Obstacle<S, D>| {
+            let (g, r) = (numbers(&o.gradient(&x)), numbers(&(x - o.reference())));
+            g.norm() * r.norm() / g.dot(&r).max(1e-9)
+        };
+        // In fixed point the gradient itself does not fit far from a superellipsoid, of which nothing is seen slantingly.
+        let fits = |o: &&Obstacle<S, D>| o.gradient(&x).iter().all(|g| g.abs() < S::from_f64(2047.0));
+        let present = self.controller.table().iter().map(|e| e.obstacle()).filter(|o| o.gamma(&x) < S::FAR);
+        let most = present.filter(fits).map(slant).fold(1.0, f64::max);
+        SLOPE * most * most
+    }
+
+    /// The change that is left, m/s, of the steepest interval halved again and again, each time taking the half that changes more: of a
+    /// continuous velocity nothing, of a jump all of it.
+    fn jump(&self, mut low: f64, mut high: f64, closest: f64) -> Option<f64> {
+        let (mut at_low, mut at_high) = (self.velocity(low)?, self.velocity(high)?);
+        while high - low > closest {
+            let middle = (low + high) * 0.5;
+            let at_middle = self.velocity(middle)?;
+            if (at_middle - at_low).norm() > (at_high - at_middle).norm() {
+                (high, at_high) = (middle, at_middle);
+            } else {
+                (low, at_low) = (middle, at_middle);
+            }
+        }
+        Some((at_high - at_low).norm())
+    }
+}
+
+#[derive(Default, Debug)]
+struct Found {
+    tried: u64,
+    /// m/s
+    jump: f64,
+    jump_of_bound: f64,
+    /// The steepest slope between samples.
+    slope_of_bound: f64,
+    /// Steps across a shell, into an overlap of two.
+    shells: u64,
+    overlaps: u64,
+}
+
+impl Found {
+    /// Looks closer at the step that ends here, over which the velocity changes by so much.
+    fn look<S: Scalar, const D: usize>(&mut self, line: &Line<'_, S, D>, along: f64, change: f64) {
+        if change > 0.0 {
+            let allowed = line.slope(along);
+            let jump = line.jump(along - STEP, along, closest::<S>()).unwrap_or(0.0);
+            self.jump = self.jump.max(jump);
+            self.jump_of_bound = self.jump_of_bound.max(jump / (allowed * interval::<S>()));
+            self.slope_of_bound = self.slope_of_bound.max(change / STEP / allowed);
+        }
+    }
+}
+
+/// Intervals no shorter than this are looked at: with 64 units of rounding of a metre, the rounding of a position is a part of it.
+fn closest<S: Scalar>() -> f64 {
+    (64.0 * S::EPSILON.to_f64()).max(1e-10)
+}
+
+fn along_lines<S: Scalar, const D: usize>(seed: u64, kind: &Kind, steering: SteeringPolicy<S>) -> Found {
+    let r = &mut random(seed);
+    let mut found = Found::default();
+    while found.tried < share(4) {
+        let obstacles: Vec<Obstacle<S, D>> = some(r, kind);
+        let settings = Settings { gain: S::from_f64(GAIN), steering, ..Settings::default() };
+        let controller = controller(motion(r), settings, obstacles.iter().cloned());
+        for _ in 0..5 {
+            let line = line(r, &controller, &obstacles);
+            let (mut last, mut layers) = (None, 0);
+            let (mut steepest, mut at) = (0.0, 0.0);
+            for i in 0..POINTS {
+                let along = STEP * f64::from(i);
+                let here = line.velocity(along);
+                found.tried += 1;
+                let x = (line.from + line.way * along).map(S::from_f64);
+                let now = obstacles.iter().filter(|o| o.gamma_soft(&x) <= S::one()).count();
+                if let (Some(last), Some(here)) = (last, here) {
+                    let change: f64 = (here - last as Vector<f64, D>).norm();
+                    if change > steepest {
+                        (steepest, at) = (change, along);
+                    }
+                    if now != layers {
+                        found.shells += 1;
+                        found.overlaps += u64::from(now.max(layers) > 1);
+                        found.look(&line, along, change);
+                    }
+                }
+                (last, layers) = (here, now);
+            }
+            found.look(&line, at, steepest);
+        }
+    }
+    println!("{D}-D {:e} m: {found:?}", closest::<S>());
+    found
+}
+
+fn line<'a, S: Scalar, const D: usize>(
+    r: &mut Random,
+    controller: &'a Controller<S, D, 16>,
+    obstacles: &[Obstacle<S, D>],
+) -> Line<'a, S, D> {
+    let from = numbers(&place(r, obstacles));
+    let way = Vector::<f64, D>::from_fn(|_, _| r.random_range(-1.0..1.0));
+    // Both ways from there.
+    let way = way / way.norm().max(1e-3);
+    Line { controller, from: from - way * (0.5 * STEP * f64::from(POINTS)), way }
+}
+
+/// The shortest interval, and what rounding does to both its ends, m: that acts as a displacement by some units. Times [`SLOPE`] it is
+/// the least jump that is seen: 4e-7 m/s in f64, 0.06 in f32, 0.5 in fixed point.
+fn interval<S: Scalar>() -> f64 {
+    closest::<S>() + 64.0 * S::EPSILON.to_f64()
+}
+
+fn no_jump<S: Scalar, const D: usize>(seed: u64) {
+    let mut overlaps = 0;
+    for (seed, kind) in [(seed, STILL), (seed + 100, MOVING)] {
+        let found = along_lines::<S, D>(seed, &kind, SteeringPolicy::WithFlow { beta: S::one() });
+        assert!(found.jump_of_bound < 1.0 && found.slope_of_bound < 1.0, "{found:?}");
+        assert!(found.shells * 4000 > found.tried || !is_long(), "{found:?}");
+        overlaps += found.overlaps;
+    }
+    assert!(overlaps * 100_000 > share(2) || !is_long());
+}
+
+macro_rules! campaigns {
+    ($($name:ident: $scalar:ty, $d:literal, $seed:literal;)+) => {
+        $(#[test] fn $name() { no_jump::<$scalar, $d>($seed); })+
+    };
+}
+campaigns! {
+    continuity_2d_f64: f64, 2, 41;
+    continuity_3d_f64: f64, 3, 42;
+    continuity_2d_f32: f32, 2, 43;
+    continuity_3d_f32: f32, 3, 44;
+    continuity_2d_fixed: Fixed, 2, 45;
+    continuity_3d_fixed: Fixed, 3, 46;
+}
+
+/// The paper's own steering jumps by c at a shell, and the search finds it in every number type.
+#[test]
+fn what_jumps_is_found() {
+    fn check<S: Scalar, const D: usize>(seed: u64) {
+        let found = along_lines::<S, D>(seed, &STILL, SteeringPolicy::fixed(S::from_f64(0.7)));
+        assert!(found.jump_of_bound > 1.0 && found.jump > 0.9 * GAIN || !is_long(), "{found:?}");
+    }
+    check::<f64, 2>(47);
+    check::<f64, 3>(48);
+    check::<f32, 2>(49);
+    check::<Fixed, 2>(50);
+    check::<Fixed, 3>(51);
+}

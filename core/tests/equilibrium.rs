@@ -1,0 +1,73 @@
+//! With `WithFlow` the attractor stays an equilibrium, wherever cores and soft layers lie.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
+
+mod world;
+
+use num_traits::Zero;
+use pliant_core::scalar::Fixed;
+use pliant_core::{Region, RobotState, Scalar, Vector};
+use world::scene::{PLACES, STILL, controller, place, some, with_flow};
+use world::{Kind, is_long, motion, numbers, on_grid, random, share, vector};
+
+#[derive(Default, Debug)]
+struct Tally {
+    tried: u64,
+    soft: u64,
+    intersection: u64,
+    hard: u64,
+    /// Driven by whole ticks, guard and limits included.
+    ticked: u64,
+}
+
+fn attractor_rests<S: Scalar, const D: usize>(seed: u64) {
+    let r = &mut random(seed);
+    let mut tally = Tally::default();
+    while tally.tried < share(2) {
+        let obstacles = some::<S, D>(r, &Kind { obstacles: 15, ..STILL });
+        let mut controller = controller(motion(r), with_flow(), obstacles.iter().cloned());
+        for _ in 0..PLACES {
+            // On the grid the attractor is moved to the bit: x - d(t) is where it was learnt, and f is zero rather than rounding.
+            let x = numbers(&place(r, &obstacles));
+            let x = vector::<S, D>(&on_grid([0, 1, 2].map(|i| x.get(i).copied().unwrap_or(0.0))));
+            assert!(controller.aim(&x, &Vector::zeros()) && controller.motion().attractor() == x);
+            let state = RobotState::new(x).unwrap();
+            // In a core as well: what bends a flow of zero leaves zero.
+            let stages = controller.evaluate(&state);
+            assert_eq!(stages.adapted, Vector::<S, D>::zero(), "{stages:?} {controller:?}");
+            tally.tried += 1;
+            match stages.region {
+                Region::Soft => tally.soft += 1,
+                Region::Intersection => tally.intersection += 1,
+                Region::Hard => tally.hard += 1,
+                Region::Free => {}
+            }
+            // Nearer the guard may hold a skin of 15 um: the thinnest body is 30 mm thick and p = 3 at most, so that Gamma = 1.01 is
+            // 50 um out.
+            if stages.gamma > S::from_f64(1.01) {
+                let command = controller.tick(&state, S::from_f64(0.001));
+                assert_eq!(command.velocity, Vector::<S, D>::zero(), "{command:?} {controller:?}");
+                tally.ticked += 1;
+            }
+        }
+    }
+    println!("{D}-D: {tally:?}");
+    let often = |n: u64, share: u64| assert!(n * share > tally.tried || !is_long(), "{tally:?}");
+    often(tally.soft, 20);
+    often(tally.intersection, 400);
+    often(tally.hard, 20);
+    often(tally.ticked, 2);
+}
+
+macro_rules! campaigns {
+    ($($name:ident: $scalar:ty, $d:literal, $seed:literal;)+) => {
+        $(#[test] fn $name() { attractor_rests::<$scalar, $d>($seed); })+
+    };
+}
+campaigns! {
+    equilibrium_2d_f64: f64, 2, 9;
+    equilibrium_3d_f64: f64, 3, 10;
+    equilibrium_2d_f32: f32, 2, 11;
+    equilibrium_3d_f32: f32, 3, 12;
+    equilibrium_2d_fixed: Fixed, 2, 13;
+    equilibrium_3d_fixed: Fixed, 3, 14;
+}

@@ -1,0 +1,155 @@
+//! Was there really no velocity? Section 7 of docs/method.md once more, in f64 and from what is public: what every core of the next sample asks of
+//! the velocity, as far as there is no choice in it.
+
+use crate::world::numbers;
+use pliant_core::{Controller, Obstacle, RobotState, Scalar, Shape, Vector};
+
+/// n.u >= offset, m/s.
+struct Side<const D: usize> {
+    normal: Vector<f64, D>,
+    offset: f64,
+}
+
+/// All that is asked of one velocity.
+pub struct Asked<const D: usize> {
+    sides: Vec<Side<D>>,
+    speed: f64,
+    /// Is standing still allowed by every obstacle there is?
+    pub may_stand: bool,
+    /// Is a polygon or a wall so near that it may ask for something? Then there is more to fulfil than `sides`.
+    pub more: bool,
+}
+
+/// What rounding may do to the guard's own distances and velocities.
+struct Rounding {
+    /// m
+    distance: f64,
+    /// Of a unit normal, and so of a velocity over the speed.
+    normal: f64,
+}
+
+impl<const D: usize> Asked<D> {
+    /// By `controller` after its tick at `state`: then its obstacles are those of the next sample. Every demand is made a little stronger than the
+    /// guard's, by what rounding may have done to that.
+    pub fn new<S: Scalar>(controller: &Controller<S, D, 32>, state: &RobotState<S, D>, dt: f64) -> Self {
+        let x = numbers(state.position());
+        let settings = controller.settings();
+        let (speed, alpha) = (settings.limits.speed.to_f64(), settings.guard.map_or(1.0, |g| g.approach.to_f64()));
+        let eps = S::EPSILON.to_f64();
+        let skin = (16.0 * eps * x.iter().fold(1.0, |m, x| x.abs().max(m))).max(1.0 / 65536.0);
+        let rounding = Rounding { distance: 4.0 * eps, normal: 64.0 * eps };
+        let mut asked = Self { sides: Vec::new(), speed, may_stand: true, more: false };
+        let mut side = |normal: Vector<f64, D>, gap: f64| {
+            let gap = gap - rounding.distance;
+            let room = gap - skin;
+            // Farther than a step can bring it near at the rate of approach.
+            if room * alpha > speed * dt {
+                return true;
+            }
+            let share = if room > 0.0 {
+                alpha
+            } else if 2.0 * gap >= skin {
+                0.06
+            } else {
+                1.0
+            };
+            let offset = -room * share / dt + rounding.normal * speed;
+            asked.sides.push(Side { normal, offset });
+            room >= 0.0
+        };
+        let step = speed * dt;
+        let (mut may_stand, mut more) = (true, false);
+        for entry in controller.table().iter() {
+            let o = entry.obstacle();
+            match &o.spec().shape {
+                _ if o.spec().wall => {
+                    // The curve of the wall within a step takes at most 1.2 p (2p - 1) L^2 of 1 - gamma, with p = 3 and L = 2 mm/0.7 m 1.5e-4, and of a
+                    // box whose corners have a radius of 0.2 m 2e-5 m: nothing where the gauge is below 0.98. Its rate of approach asks for more.
+                    may_stand &= o.gamma(state.position()).to_f64() > 1.0 / (0.98 * 0.98);
+                    more = true;
+                }
+                Shape::Polygon(polygon) => {
+                    // One of its pieces' sides, that with most room for what is wanted. A corner of a piece may be as sharp as 11.5 degrees (two corners 30
+                    // degrees apart, one three times as far out), so a point at a distance d from the piece is at least d/10 beyond one of its sides,
+                    // and the chosen one has as much but for two steps.
+                    let d = distance(o, polygon.vertices(), &x);
+                    let inside = o.gamma(state.position()) <= S::one();
+                    may_stand &= !inside && d > 10.0 * (2.0 * step + skin + rounding.distance);
+                    more |= inside || (0.1 * d - 2.0 * step - skin) * alpha < step;
+                }
+                _ => {
+                    if let Some((normal, gap)) = supporting(o, state.position()) {
+                        may_stand &= side(normal, gap);
+                    }
+                }
+            }
+        }
+        for p in controller.table().scan().points() {
+            let away = x - numbers(p);
+            if away.norm() > 1e-6 {
+                may_stand &= side(away.normalize(), away.norm() - controller.table().scan().radius().to_f64());
+            } else {
+                (may_stand, more) = (false, true);
+            }
+        }
+        (asked.may_stand, asked.more) = (may_stand, more);
+        asked
+    }
+
+    /// A velocity within the limit that does all that is asked, if the search finds one: each time the demand that is violated most is fulfilled,
+    /// and the velocity cut to the limit, which comes closer to every velocity that is allowed (Agmon, Motzkin & Schoenberg).
+    ///
+    /// What is found is a proof that `INFEASIBLE` was wrong, for it is checked here. That nothing is found proves nothing by itself: where what is
+    /// allowed is thinner than what 300 steps come near to, it is missed.
+    pub fn search(&self) -> Option<Vector<f64, D>> {
+        let mut u = Vector::<f64, D>::zeros();
+        for _ in 0..300 {
+            let worst = self.sides.iter().map(|s| (s.offset - s.normal.dot(&u), s));
+            let (violation, side) = worst.max_by(|a, b| a.0.total_cmp(&b.0))?;
+            if violation <= 0.0 {
+                return Some(u);
+            }
+            u += side.normal * (violation * 1.5);
+            let length = u.norm();
+            let most = self.speed * (1.0 - 1e-6);
+            if length > most {
+                u *= most / length;
+            }
+        }
+        None
+    }
+}
+
+/// The supporting half-space of a convex core and how far x is from it, m: with the gauge lambda = Gamma^(1/2p) the normal is along its gradient, and
+/// the distance (lambda - 1)/|grad lambda|. Nothing far away; no one side at the very centre.
+fn supporting<S: Scalar, const D: usize>(o: &Obstacle<S, D>, x: &Vector<S, D>) -> Option<(Vector<f64, D>, f64)> {
+    let p = if let Shape::Ellipsoid { curvature, .. } = o.spec().shape { f64::from(curvature) } else { 1.0 };
+    let gamma = o.gamma(x).to_f64();
+    let lambda = gamma.powf(0.5 / p);
+    // 2.3 times the 45 mm of the thinnest body are farther than 2 mm a step can come too near at a rate of approach of 0.02; and in fixed point an
+    // obstacle matters up to Gamma = 1000.
+    if lambda > 3.3 || gamma >= S::FAR.to_f64() {
+        return None;
+    }
+    let gradient = numbers(&o.gradient(x));
+    let slope = gradient.norm() * lambda / (2.0 * p * gamma);
+    // At the centre any side is as good: none that a velocity could fulfil.
+    let none = || (Vector::<f64, D>::zeros(), -1.0);
+    Some(if slope > 0.0 && slope.is_finite() { (gradient.normalize(), (lambda - 1.0) / slope) } else { none() })
+}
+
+/// From the nearest of its edges, m.
+fn distance<S: Scalar, const D: usize>(o: &Obstacle<S, D>, vertices: &[[S; 2]], x: &Vector<f64, D>) -> f64 {
+    let corner = |v: &[S; 2]| {
+        let way = o.spec().rotation * Vector::<S, D>::from_fn(|i, _| v[i.min(1)]);
+        numbers(&o.surface(&way))
+    };
+    let corners: Vec<Vector<f64, D>> = vertices.iter().map(corner).collect();
+    let next = corners.iter().skip(1).chain(corners.first());
+    let edges = corners.iter().zip(next).map(|(a, b)| {
+        let along = b - a;
+        let t = ((x - a).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
+        (x - (a + along * t)).norm()
+    });
+    edges.fold(f64::MAX, f64::min)
+}
