@@ -2,12 +2,11 @@
 //!
 //! One module a task or a concept: [`setup`] (what the machine must have), [`checks`] (the steps of
 //! `test`), [`tally`] (test counts out of cargo's output), [`size`] over [`image`] (what the firmware
-//! takes), [`no_panic`] over [`callers`] (that the tick cannot panic), [`campaign`], [`bench`], [`fuzz`],
+//! takes), [`no_panic`] over [`callers`] (that the tick cannot panic), [`campaign`], [`speed`] (its task is `bench`), [`fuzz`],
 //! [`demos`]; beneath them [`workspace`] starts commands and [`failure`] is what goes wrong, as one sentence.
 
 #![forbid(unsafe_code)]
 
-mod bench;
 mod callers;
 mod campaign;
 mod checks;
@@ -19,6 +18,7 @@ mod image;
 mod no_panic;
 mod setup;
 mod size;
+mod speed;
 mod tally;
 mod workspace;
 
@@ -63,7 +63,7 @@ fn run(arguments: &[String]) -> Result<(), Failure> {
         ["size"] => size::run(&Workspace::locate()?, size::Format::Table),
         ["size", "--json"] => size::run(&Workspace::locate()?, size::Format::Json),
         ["campaign", options @ ..] => campaign::run(&Workspace::locate()?, options),
-        ["bench"] => bench::run(&Workspace::locate()?),
+        ["bench"] => speed::run(&Workspace::locate()?),
         ["no-panic"] => no_panic::run(&Workspace::locate()?),
         ["fuzz", options @ ..] => fuzz::run(&Workspace::locate()?, fuzz::seconds(options)?),
         ["deny"] => deny::install_and_check(&Workspace::locate()?),

@@ -21,6 +21,7 @@ mod program;
 
 use core::cmp::Ordering;
 
+use program::allowed;
 pub use program::{HalfSpace, Solution, nearest};
 
 use crate::obstacle::Outlook;
@@ -34,9 +35,6 @@ const CAPACITY: usize = 192;
 /// The least skin, m: 2^-16, what fixed point needs within a metre. The same for all numbers, so that in a wedge between two surfaces, where
 /// some micrometres of room decide how fast it goes on, they agree.
 const SKIN: f64 = 1.0 / 65536.0;
-
-/// How often to look again for another way out.
-const LOOKS: u8 = 3;
 
 /// The share of the skin that one sample makes up for in its outer half: more than rounding takes, and no more of a push than that.
 const HOLD: f64 = 0.06;
@@ -74,27 +72,27 @@ impl<S: Scalar> Guard<S> {
         around: &Surroundings<S, D, CAP>,
     ) -> Solution<S, D> {
         let here = View { x, at: x, step: speed * dt, approach: self.approach };
-        let (seen, fastest) = self.solve(&here, wanted, speed, dt, table, around);
+        let mut seen = HalfSpaces::new(speed);
+        self.look(&here, wanted, speed, dt, table, around, &mut seen);
+        let best = seen.nearest(wanted);
         // A core that cannot be left in time alone cannot be left along with others.
-        if seen.feasible || fastest > speed {
-            return seen;
+        if best.feasible || seen.fastest > speed {
+            return best;
         }
         // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
-        let mut best = seen;
-        for _ in 0..LOOKS {
-            let at = x + best.velocity * dt;
-            let again = View { x, at: &at, step: speed * dt * S::from_f64(2.0), approach: S::one() };
-            let (found, _) = self.solve(&again, wanted, speed, dt, table, around);
-            if found.feasible {
-                return found;
-            }
-            best = found;
+        let at = x + best.velocity * dt;
+        let there = View { x, at: &at, step: speed * dt * S::from_f64(2.0), approach: S::one() };
+        seen.clear(speed);
+        self.look(&there, wanted, speed, dt, table, around, &mut seen);
+        match seen.allowed(wanted) {
+            Some(velocity) => Solution { velocity, changed: velocity != *wanted, violation: S::zero(), feasible: true },
+            None => best,
         }
-        seen
     }
 
-    /// The same by the half-spaces that are seen from one place, and the speed that the worst of them asks for.
-    fn solve<const D: usize, const CAP: usize>(
+    /// The half-spaces that are seen from one place, into `all`.
+    #[allow(clippy::too_many_arguments, reason = "what is seen, from where, and where to put it")]
+    fn look<const D: usize, const CAP: usize>(
         &self,
         view: &View<'_, S, D>,
         wanted: &Vector<S, D>,
@@ -102,11 +100,11 @@ impl<S: Scalar> Guard<S> {
         dt: S,
         table: &Table<S, D, CAP>,
         around: &Surroundings<S, D, CAP>,
-    ) -> (Solution<S, D>, S) {
+        all: &mut HalfSpaces<S, D>,
+    ) {
         let skin = skin(view.x);
         let rate = S::one() / dt;
         let gone = view.at - view.x;
-        let mut all = HalfSpaces::new(speed);
         let mut keep = |normal: Vector<S, D>, gap: S| {
             let room = gap - skin;
             let share = if room > S::zero() {
@@ -127,7 +125,6 @@ impl<S: Scalar> Guard<S> {
             }
         }
         table.scan().keep_out(view.at, self.reach(view.x, speed, dt) + view.step, &mut keep);
-        all.solve(wanted)
     }
 }
 
@@ -156,6 +153,11 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
         Self { all: heapless::Vec::new(), speed, fastest: S::zero() }
     }
 
+    fn clear(&mut self, speed: S) {
+        self.all.clear();
+        (self.speed, self.fastest) = (speed, S::zero());
+    }
+
     /// Puts one in; where there is no room, in the place of the loosest, which no velocity slower than its offset violates.
     fn add(&mut self, new: HalfSpace<S, D>) {
         if !(new.offset > -self.speed) {
@@ -172,9 +174,13 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
         self.speed = -new.offset;
     }
 
-    fn solve(&mut self, wanted: &Vector<S, D>) -> (Solution<S, D>, S) {
+    fn nearest(&mut self, wanted: &Vector<S, D>) -> Solution<S, D> {
         let solution = nearest(wanted, &mut self.all, self.speed);
-        (Solution { feasible: solution.feasible && self.speed >= S::zero(), ..solution }, self.fastest)
+        Solution { feasible: solution.feasible && self.speed >= S::zero(), ..solution }
+    }
+
+    fn allowed(&mut self, wanted: &Vector<S, D>) -> Option<Vector<S, D>> {
+        if self.speed < S::zero() { None } else { allowed(wanted, &mut self.all, self.speed) }
     }
 }
 

@@ -68,23 +68,39 @@ pub fn nearest<S: Scalar, const D: usize>(
     half_spaces: &mut [HalfSpace<S, D>],
     speed: S,
 ) -> Solution<S, D> {
-    let speed = if speed > S::zero() { speed } else { S::zero() };
+    let speed = speed.max(S::zero());
+    if let Some(velocity) = allowed(wanted, half_spaces, speed) {
+        return Solution { velocity, changed: velocity != *wanted, violation: S::zero(), feasible: true };
+    }
+    let (goal, start) = within_ball(wanted, speed);
+    let half_spaces = with_sides(half_spaces);
+    let velocity = least_violation(goal, start, half_spaces, speed);
+    let violation = worst(half_spaces, &velocity);
+    // What is missed by no more than rounding is not missed.
+    let feasible = violation <= margin(speed);
+    let violation = if feasible { S::zero() } else { violation };
+    Solution { velocity, changed: velocity != *wanted, violation, feasible }
+}
+
+/// The same, and nothing where there is none.
+pub(super) fn allowed<S: Scalar, const D: usize>(
+    wanted: &Vector<S, D>,
+    half_spaces: &mut [HalfSpace<S, D>],
+    speed: S,
+) -> Option<Vector<S, D>> {
     let (goal, start) = within_ball(wanted, speed);
     let tolerance = rounding(speed);
     if !half_spaces.iter().any(|h| h.violation(&start) > tolerance) {
-        return Solution { velocity: start, changed: start != *wanted, violation: S::zero(), feasible: true };
+        return Some(start);
     }
     let half_spaces = with_sides(half_spaces);
-    let margin = tolerance * S::from_f64(4.0);
-    let exact = Programme::nearest(goal, start, speed, S::zero(), tolerance).solve(half_spaces);
-    let checked = exact.map(|velocity| (velocity, worst(half_spaces, &velocity)));
-    let (velocity, violation) = checked.filter(|(_, violation)| *violation <= margin).unwrap_or_else(|| {
-        let velocity = least_violation(goal, start, half_spaces, speed);
-        (velocity, worst(half_spaces, &velocity))
-    });
-    let feasible = violation <= margin;
-    let violation = if feasible { S::zero() } else { violation };
-    Solution { velocity, changed: velocity != *wanted, violation, feasible }
+    let velocity = Programme::nearest(goal, start, speed, S::zero(), tolerance).solve(half_spaces)?;
+    (worst(half_spaces, &velocity) <= margin(speed)).then_some(velocity)
+}
+
+/// By how much a half-space may be missed.
+fn margin<S: Scalar>(speed: S) -> S {
+    rounding(speed) * S::from_f64(4.0)
 }
 
 /// The wanted velocity itself, cut down to a length one can calculate with, and the one nearest to it in the ball.
