@@ -68,7 +68,7 @@ pub fn nearest<S: Scalar, const D: usize>(
     half_spaces: &mut [HalfSpace<S, D>],
     speed: S,
 ) -> Solution<S, D> {
-    let speed = speed.max(S::zero());
+    let speed = if speed > S::zero() { speed } else { S::zero() };
     if let Some(velocity) = allowed(wanted, half_spaces, speed) {
         return Solution { velocity, changed: velocity != *wanted, violation: S::zero(), feasible: true };
     }
