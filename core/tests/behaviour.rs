@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
 use pliant_core::{
-    Ageing, Controller, Motion, Obstacle, ObstacleSpec, RobotState, Scan, Settings, Shape, Status, Vector, rotation,
+    Ageing, Controller, Guard, Motion, Obstacle, ObstacleSpec, RobotState, Scan, Settings, Shape, Status, Vector,
+    rotation,
 };
 
 type V = Vector<f64, 2>;
@@ -222,5 +223,26 @@ fn one_ball_alone_bends_the_flow_as_in_the_book() {
         let (s, ratio) = ((2.0 * angle).sin_cos(), (0.1f64 / 0.15).powi(2));
         let book = V::new(1.0 - ratio * s.1, -ratio * s.0);
         assert!((v - book).norm() < 1e-3, "{v} {book}");
+    }
+}
+
+#[test]
+fn growth_by_ageing_is_seen_before_it_begins() {
+    // At its time to live it begins to grow nearly as fast as the robot may go, and one sample may use up all of the distance.
+    let settings = Settings {
+        ageing: Ageing { time_to_live: 0.1, growth: 0.4, hold: 1.0 },
+        guard: Some(Guard { approach: 1.0 }),
+        ..Settings::default()
+    };
+    for i in 0..200 {
+        let mut c: Controller<f64, 2, 16> = Controller::new(Motion::linear(V::new(-1.0, 0.0), 10.0).unwrap(), settings);
+        put(&mut c, &[ellipse(0.0, 0.0, 0.05, 0.05, 0.0)]);
+        let mut x = V::new(0.0995 + 1e-5 * f64::from(i), 0.0);
+        for _ in 0..400 {
+            let command = c.tick(&RobotState::new(x).unwrap(), 0.001);
+            x += command.velocity * 0.001;
+            let inside = gamma(&c, 0, &x) < 1.0;
+            assert!(!inside || command.status.contains(Status::INFEASIBLE), "{i}: {x} {command:?}");
+        }
     }
 }

@@ -5,6 +5,7 @@ use crate::{Matrix, Scalar, Vector, is_zero, rotation};
 
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// Carries pose and size on by `dt` seconds.
+    #[inline(always)]
     pub(crate) fn advance(&mut self, dt: S) {
         if !self.moves {
             return;

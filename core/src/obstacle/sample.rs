@@ -66,7 +66,11 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             gamma_soft,
             normal: if self.spec.wall { -normal } else { normal },
             arm: sample.arm,
-            leaning: self.spec.rotation * Vector::from_fn(|i, _| S::from_f64(LEANING[i.min(2)])),
+            leaning: if D == 3 {
+                self.spec.rotation * Vector::from_fn(|i, _| S::from_f64(LEANING[i]))
+            } else {
+                Vector::zeros()
+            },
             first_axis: self.spec.rotation.column(0).into_owned(),
         })
     }

@@ -173,6 +173,10 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             if entry.age < fresh {
                 entry.obstacle.advance(dt);
                 entry.age += dt;
+                if entry.age >= fresh && entry.age >= ageing.time_to_live {
+                    // So that whoever looks next sees it coming.
+                    entry.obstacle.ages(ageing.growth);
+                }
                 continue;
             }
             // Beyond the hold time nothing changes, so the age may stop there too and never loses its last digit.
@@ -187,10 +191,6 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 entry.obstacle.age(ageing.growth, dt);
             }
             entry.age += dt;
-            if entry.age >= ageing.time_to_live {
-                // So that whoever looks next sees it coming.
-                entry.obstacle.ages(ageing.growth);
-            }
         }
         self.scan.advance(dt, ageing);
         status
