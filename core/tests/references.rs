@@ -9,7 +9,7 @@ use pliant_core::{
     Vector, rotation,
 };
 use rand::Rng;
-use world::{Kind, Random, random, share};
+use world::{Kind, Random, is_long, random, share};
 
 type V = Vector<f64, 2>;
 
@@ -121,7 +121,7 @@ fn no_reference_point_is_lost_in_clusters_of_polygons() {
         }
     }
     println!("{polygons} polygons, {common} clusters with one point, {flagged} flagged");
-    assert!(polygons > 500 && common > 100 && flagged > 100);
+    assert!(!is_long() || polygons > 500 && common > 100 && flagged > 100);
 }
 
 #[test]
