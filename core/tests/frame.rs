@@ -7,7 +7,7 @@ use pliant_core::scalar::Fixed;
 use pliant_core::shape::{Polygon, Shape};
 use pliant_core::{
     Component, Controller, LpvDs, Matrix, Motion, Obstacle, ObstacleSpec, RobotState, Scalar, Scan, Settings,
-    SteeringPolicy, Vector, rotation,
+    SteeringPolicy, Vector,
 };
 use rand::Rng;
 use world::scene::{MOVING, PLACES, controller, place, some};
@@ -19,7 +19,6 @@ struct Parts<const D: usize> {
     components: Vec<Component<f64, D>>,
     obstacles: Vec<ObstacleSpec<f64, D>>,
     scan: Vec<Vector<f64, D>>,
-    beta: f64,
 }
 
 /// x -> q x + t, and after it every number changed by up to `jitter` (times one metre, one radian, ... whatever its unit).
@@ -104,7 +103,7 @@ impl<const D: usize> Frame<'_, D> {
     }
 
     fn controller<S: Scalar>(&mut self, parts: &Parts<D>) -> Controller<S, D, 16> {
-        let steering = SteeringPolicy::WithFlow { beta: S::from_f64(parts.beta) };
+        let steering = SteeringPolicy::WithFlow { beta: S::one() };
         let settings = Settings { steering, gain: S::from_f64(0.1), ..Settings::default() };
         let obstacles: Vec<_> = parts.obstacles.iter().map(|o| self.obstacle(o)).collect();
         let mut controller = controller(self.motion(parts), settings, obstacles);
@@ -114,25 +113,14 @@ impl<const D: usize> Frame<'_, D> {
     }
 }
 
-fn parts<const D: usize>(r: &mut Random, beta: f64) -> Parts<D> {
+fn parts<const D: usize>(r: &mut Random) -> Parts<D> {
     let mut obstacles: Vec<_> = some::<f64, D>(r, &MOVING).iter().map(|o| o.spec().clone()).collect();
     if r.random_bool(0.2) {
         obstacles.push(wall::<f64, D>(r).spec().clone());
     }
     let scan = if r.random_bool(0.2) { (0..10).map(|_| vector(&within(r, 0.6))).collect() } else { Vec::new() };
     let components = if r.random_bool(0.5) { components(r) } else { Vec::new() };
-    Parts { attractor: vector(&on_grid(within(r, 0.4))), components, obstacles, scan, beta }
-}
-
-/// A rotation, and whether the steering has to be that of no push: the side on which a saddle is left is the normal turned by a right angle in
-/// the plane, which turns with the world; in space it is a x n, which does so only about a = (1, 2, 2)/3.
-fn rotation<const D: usize>(r: &mut Random) -> (Matrix<f64, D>, f64) {
-    if D == 2 || r.random_bool(0.5) {
-        return (turn(r), if D == 2 { 1.0 } else { 0.0 });
-    }
-    let (sin, cos) = r.random_range(-3.1..3.1f64).sin_cos();
-    let q = rotation::spatial([cos, sin / 3.0, sin * 2.0 / 3.0, sin * 2.0 / 3.0]).unwrap();
-    (Matrix::from_fn(|i, j| q[(i, j)]), 1.0)
+    Parts { attractor: vector(&on_grid(within(r, 0.4))), components, obstacles, scan }
 }
 
 /// How many neighbouring worlds the conditioning is taken from.
@@ -150,9 +138,9 @@ fn frame<S: Scalar, const D: usize>(seed: u64) {
     let (mut worlds, mut elsewhere) = (0u64, 0u64);
     let eps = S::EPSILON.to_f64();
     while compared < share(2) {
-        let (q, beta) = rotation::<D>(r);
+        let q = turn::<f64, D>(r);
         let t: Vector<f64, D> = vector(&within(r, 0.8));
-        let parts = parts::<D>(r, beta);
+        let parts = parts::<D>(r);
         let (one, none) = (Matrix::identity(), Vector::zeros());
         let here: Controller<S, D, 16> = Frame { q: one, t: none, jitter: 0.0, random: r }.controller(&parts);
         let there: Controller<S, D, 16> = Frame { q, t, jitter: 0.0, random: r }.controller(&parts);
