@@ -198,3 +198,23 @@ fn the_middle_of_a_corridor_of_points_is_no_dead_end() {
         }
     }
 }
+
+#[test]
+fn a_notch_is_left_along_its_sides() {
+    // Close to both sides of a notch one half-space a piece is kept, and what is wished runs along one of them.
+    let goal = V::new(0.1355, -0.211);
+    let mut lost = Vec::new();
+    for i in 0..400 {
+        let mut c = controller(goal);
+        c.upsert(1, Obstacle::new(ObstacleSpec { soft_ratio: V::repeat(1.3), ..bracket() }).unwrap(), 0.0).unwrap();
+        let start = V::new(0.0301 + 0.004 * f64::from(i % 20), 0.0301 + 0.004 * f64::from(i / 20));
+        let mut x = start;
+        for _ in 0..4000 {
+            x += c.tick(&RobotState::new(x).unwrap(), 0.002).velocity * 0.002;
+        }
+        if (x - goal).norm() > 0.01 {
+            lost.push((start, x));
+        }
+    }
+    assert!(lost.is_empty(), "{} of 400, such as {:?}", lost.len(), lost.first());
+}

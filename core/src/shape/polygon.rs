@@ -314,7 +314,7 @@ impl<S: Scalar> Piece<S> {
     /// Of the sides that u is beyond, the one that cuts its wish the least; if it is beyond none, the one it is least behind.
     fn consider(&mut self, side: Side<S>) {
         let better = self.best.as_ref().is_none_or(|best| {
-            let (own, other) = (size(side.normal), size(best.normal));
+            let (own, other) = (S::norm(&side.normal), S::norm(&best.normal));
             match (side.gap > S::zero(), best.gap > S::zero()) {
                 (true, true) => side.left * other > best.left * own,
                 (false, false) => side.gap * other > best.gap * own,
