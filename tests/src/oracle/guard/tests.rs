@@ -119,14 +119,15 @@ fn a_scan_gives_one_half_space_a_point() {
     let free = guarded(&spaces, &[0.0, 1.0], &[0.0, -1.0], 1.0, 0.5, 0.1);
     assert_eq!(free.velocity, Some(vec![0.0, -1.0]));
     let bound = guarded(&spaces, &[0.0, 1.0], &[0.0, -1.0], 1.0, 0.5, 1.0).velocity.unwrap();
-    assert!((bound[1] + 0.375).abs() < 1e-12);
+    assert!((bound[1] + 0.5 * (0.75 - SKIN)).abs() < 1e-12);
     // Inside, out at once; or as far as the speed allows.
     let inside = half_spaces(&next, &[0.0, 0.2], 0.1).unwrap();
     let out = guarded(&inside, &[0.0, 0.2], &[0.3, -1.0], 1.0, 0.5, 0.1).velocity.unwrap();
-    assert!((out[1] - 0.5).abs() < 1e-12 && (out[0] - 0.3).abs() < 1e-12);
+    let asked = (0.05 + SKIN) / 0.1;
+    assert!((out[1] - asked).abs() < 1e-12 && (out[0] - 0.3).abs() < 1e-12);
     let slow = guarded(&inside, &[0.0, 0.2], &[0.3, -1.0], 0.2, 0.5, 0.1);
-    assert!(slow.velocity.is_none() && (slow.violation - 0.3).abs() < 1e-9);
-    assert!((Guarded::missed(&inside, &[0.0, 0.2], &[0.0, 0.2], 0.5, 0.1) - 0.3).abs() < 1e-12);
+    assert!(slow.velocity.is_none() && (slow.violation - (asked - 0.2)).abs() < 1e-9);
+    assert!((Guarded::missed(&inside, &[0.0, 0.2], &[0.0, 0.2], 0.5, 0.1) - (asked - 0.2)).abs() < 1e-12);
 }
 
 #[test]
