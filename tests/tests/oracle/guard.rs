@@ -2,7 +2,7 @@
 
 use pliant_core::{RobotState, Status};
 use pliant_tests::oracle::random_scene::{PointKind, RandomAgeing, RandomScene, Recipe, generate_from};
-use pliant_tests::oracle::{Guarded, OracleShape, carried, evaluate, guarded, half_spaces, violations};
+use pliant_tests::oracle::{Guarded, carried, evaluate, guarded, half_spaces, violations};
 
 use super::convert::{as_used, controller, vector};
 use super::{decided, size};
@@ -34,7 +34,7 @@ fn compare<const D: usize>(seed: u64, random: &RandomScene, dt: f64, compared: &
     }
     for point in &random.points {
         let wanted = evaluate(&scene, &point.x, None).unwrap();
-        let spaces = half_spaces(&next, &point.x, dt).unwrap();
+        let spaces = half_spaces(&next, &point.x, &wanted.limited, dt).unwrap();
         if !decided(&scene, &wanted) || point.kind == PointKind::Far {
             continue;
         }
@@ -89,15 +89,6 @@ fn compare_all(recipe: impl Fn(usize) -> Recipe, seeds: std::ops::Range<u64>, st
         scene.guard = Some(scene.guard.unwrap_or(0.02));
         // The first command comes from rest; here it may jump.
         scene.limits.acceleration = None;
-        if seed % 4 < 2 {
-            // Half of the planar ones without polygons, of which only the end of a step can be compared.
-            let round: Vec<bool> =
-                scene.obstacles.iter().map(|o| !matches!(o.shape, OracleShape::Polygon { .. })).collect();
-            let mut keep = round.iter();
-            scene.obstacles.retain(|_| keep.next() == Some(&true));
-            let mut keep = round.iter();
-            random.ageing.ages.retain(|_| keep.next() == Some(&true));
-        }
         for dt in steps {
             match dimension {
                 2 => compare::<2>(seed, &random, dt, &mut compared),
