@@ -328,7 +328,7 @@ impl<S: Scalar, const D: usize> Programme<S, D> {
         Some(Flat {
             dimension,
             centre: flat.centre + across * shift,
-            radius: ((radius - shift) * (radius + shift)).max(S::zero()).sqrt(),
+            radius: S::other_leg(radius, shift),
             along: flat.along - across * across.transpose(),
         })
     }

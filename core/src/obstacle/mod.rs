@@ -45,6 +45,9 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     soft_until: S,
     /// From the centre to the reference point, in the world's frame, m: as long as nothing turns it stays.
     offset: Vector<S, D>,
+    /// From there to the reference point of the tree's root, in the world's frame, m; zero where there is none. And is there one?
+    lean: Vector<S, D>,
+    leans: bool,
     /// Is it an ellipsoid with p = 1, and no wall? The usual case goes a short way.
     plain: bool,
     /// Does it move, turn or grow? Does it turn?
@@ -69,6 +72,8 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     /// The reference point in the obstacle's frame, its own or one shared with obstacles it overlaps; and u = q * this when it was chosen.
     local_reference: Vector<S, D>,
     chosen_at: Vector<S, D>,
+    /// `lean` in the obstacle's frame.
+    local_lean: Vector<S, D>,
     /// How much each semi-extent has grown, m.
     grown: S,
     /// How much ageing has added, m, and adds, m/s.
@@ -108,6 +113,8 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             soft: nothing,
             soft_until: S::one(),
             offset: nothing,
+            lean: nothing,
+            leans: false,
             plain: !spec.wall && body.is_ellipsoid(),
             moves: false,
             spins: false,
@@ -124,6 +131,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             spec,
             local_reference: nothing,
             chosen_at: nothing,
+            local_lean: nothing,
             grown: S::zero(),
             aged: S::zero(),
             ageing: S::zero(),

@@ -47,7 +47,10 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
                 surface_velocity += unit(&shape_normal).1 * self.swelling;
             }
         }
-        let arm = x - self.spec.center - self.offset;
+        let mut arm = x - self.spec.center - self.offset;
+        if self.leans {
+            arm = self.arm(&shape_normal, arm);
+        }
         Sample { gamma, outward: shape_normal, arm, surface_velocity }
     }
 

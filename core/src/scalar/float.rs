@@ -137,6 +137,10 @@ macro_rules! scalar {
                 Scalar::sqrt(<Self as Scalar>::dot(components, components))
             }
             #[inline(always)]
+            fn other_leg(hypotenuse: Self, leg: Self) -> Self {
+                Scalar::sqrt(Scalar::max((hypotenuse - leg) * (hypotenuse + leg), 0.0))
+            }
+            #[inline(always)]
             fn dot(a: &[Self], b: &[Self]) -> Self {
                 // From the first product on, not from zero: as nalgebra sums.
                 a.iter().zip(b).map(|(a, b)| a * b).reduce(|sum, product| sum + product).unwrap_or(0.0)

@@ -78,6 +78,8 @@ pub trait Scalar:
     fn rounding(size: Self) -> Self;
     /// Euclidean length, for components whose squares need not fit in fixed point.
     fn norm(components: &[Self]) -> Self;
+    /// sqrt(hypotenuse^2 - leg^2), zero where that is no number: the other leg, for lengths whose squares need not fit, or have no digits, in fixed point.
+    fn other_leg(hypotenuse: Self, leg: Self) -> Self;
     /// The length of a vector of up to three components, and the vector over it; zero where that is no number. Error of the length in fixed point: half a
     /// step, and 1.5e-8 of it.
     #[inline(always)]
