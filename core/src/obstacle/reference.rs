@@ -56,7 +56,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             Some(x) => (self.local(x), self.hard),
             None => (self.spec.reference, self.unit.map(|unit| S::one() / unit)),
         };
-        self.leans = false;
+        (self.leans, self.local_lean) = (false, Vector::zeros());
         self.place_reference();
     }
 
