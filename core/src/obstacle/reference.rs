@@ -4,7 +4,7 @@ use super::Obstacle;
 use crate::{Scalar, Vector, is_zero, times, transposed_times};
 
 /// The share of n.r that is left where r leads from nearer to the root of a tree.
-const KEPT: f64 = 0.3;
+const KEPT: f64 = 0.1;
 
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// The reference point in the world's frame, m: its own, or one that it shares with obstacles it overlaps.

@@ -189,7 +189,7 @@ impl Body {
         if self.wall { -out } else { out }
     }
 
-    /// r, from the reference point to x; in a tree from as near to its root's as leaves n.r three tenths of that.
+    /// r, from the reference point to x; in a tree from as near to its root's as leaves n.r a tenth of that.
     pub(super) fn radius(&self, x: &DVector<f64>) -> DVector<f64> {
         let own = self.reference();
         let Some(hub) = self.hub() else {
@@ -197,7 +197,7 @@ impl Body {
         };
         let normal = self.normal(x);
         let seen = |from: &DVector<f64>| normal.dot(&(x - from));
-        let (least, far) = (0.3 * seen(&own), seen(&hub));
+        let (least, far) = (0.1 * seen(&own), seen(&hub));
         if least <= 0.0 {
             return x - own;
         }

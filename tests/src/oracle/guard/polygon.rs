@@ -2,9 +2,9 @@
 
 use nalgebra::DVector;
 
-use super::super::geometry::{length, plane_cross, turned_left, turned_right, unit};
+use super::super::geometry::{length, plane_cross, turned_left, unit};
 use super::super::obstacle::Body;
-use super::super::shape::Shape;
+use super::super::shape::{Shape, turned_right};
 
 /// By how much two choices may differ for rounding to decide between them, m.
 const TIE: f64 = 1e-9;
