@@ -2,7 +2,7 @@
 
 use pliant_core::{RobotState, Status};
 use pliant_tests::oracle::random_scene::{PointKind, RandomAgeing, RandomScene, Recipe, generate_from};
-use pliant_tests::oracle::{Guarded, carried, evaluate, guarded, half_spaces, violations};
+use pliant_tests::oracle::{Guarded, OracleShape, carried, evaluate, guarded, half_spaces, violations};
 
 use super::convert::{as_used, controller, vector};
 use super::{decided, size};
@@ -43,7 +43,8 @@ fn compare<const D: usize>(seed: u64, random: &RandomScene, dt: f64, compared: &
         let u: Vec<f64> = command.velocity.iter().copied().collect();
         let place = || format!("seed {seed}, {:?} at {:?}: {command:?}, wanted {wanted:?}", point.kind, point.x);
         assert!(size(&u) <= speed * (1.0 + 1e-12), "{}", place());
-        if !(spaces.complete && spaces.determined) {
+        let polygons = scene.obstacles.iter().any(|o| matches!(o.shape, OracleShape::Polygon { .. }));
+        if polygons || !(spaces.complete && spaces.determined) {
             let ends = violations(&next, &point.x, &u, dt).unwrap();
             let inside = ends.iter().find(|violation| violation.gamma < 1.0 - 1e-6);
             assert!(inside.is_none() || command.status.contains(Status::INFEASIBLE), "{}: {inside:?}", place());
@@ -89,6 +90,15 @@ fn compare_all(recipe: impl Fn(usize) -> Recipe, seeds: std::ops::Range<u64>, st
         scene.guard = Some(scene.guard.unwrap_or(0.02));
         // The first command comes from rest; here it may jump.
         scene.limits.acceleration = None;
+        if seed % 4 < 2 {
+            // Half of the planar ones without polygons, of which only the end of a step is compared.
+            let round: Vec<bool> =
+                scene.obstacles.iter().map(|o| !matches!(o.shape, OracleShape::Polygon { .. })).collect();
+            let mut keep = round.iter();
+            scene.obstacles.retain(|_| keep.next() == Some(&true));
+            let mut keep = round.iter();
+            random.ageing.ages.retain(|_| keep.next() == Some(&true));
+        }
         for dt in steps {
             match dimension {
                 2 => compare::<2>(seed, &random, dt, &mut compared),
