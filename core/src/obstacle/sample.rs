@@ -19,7 +19,10 @@ pub(crate) struct Sample<S: Scalar, const D: usize> {
 /// What the adaptive motion wants to know of the soft layer it is in.
 #[derive(Clone, Debug)]
 pub(crate) struct SoftLayer<S: Scalar, const D: usize> {
+    /// Gamma_k, no less than 1e-9: of a very thick layer's, deep inside, the square would leave the range of f32.
     pub gamma_soft: S,
+    /// phi: 0 at the shell, 1 from a thin band on inwards.
+    pub fade: S,
     /// n, the unit normal; of a wall inwards.
     pub normal: Vector<S, D>,
     /// r, from the reference point to x, m.
@@ -29,6 +32,9 @@ pub(crate) struct SoftLayer<S: Scalar, const D: usize> {
     /// In space, the axis about which a fixed side is found, in the world's frame.
     pub leaning: Vector<S, D>,
 }
+
+/// How fast phi grows inside the shell, over Gamma_k: within 0.1 of it.
+const FADING: f64 = 10.0;
 
 /// That axis in the obstacle's frame: one along which robots seldom approach.
 const LEANING: [f64; 3] = [1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0];
@@ -59,11 +65,12 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// The soft layer at x, if x is in it and not in the core, from what was sampled there.
     #[inline(never)]
-    pub(crate) fn soft_layer(&self, x: &Vector<S, D>, sample: Sample<S, D>) -> Option<SoftLayer<S, D>> {
+    pub(crate) fn soft_layer(&self, x: &Vector<S, D>, sample: &Sample<S, D>) -> Option<SoftLayer<S, D>> {
         let gamma_soft = self.gamma_soft(x);
         let normal = unit(&sample.outward).1;
         (sample.gamma > S::one() && gamma_soft <= S::one()).then(|| SoftLayer {
-            gamma_soft,
+            gamma_soft: gamma_soft.max(S::from_f64(1e-9)),
+            fade: ((S::one() - gamma_soft) * S::from_f64(FADING)).min(S::one()),
             normal: if self.spec.wall { -normal } else { normal },
             arm: sample.arm,
             leaning: if D == 3 {
