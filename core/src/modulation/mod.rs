@@ -115,7 +115,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Modulation<S, D, CAP> {
     /// One more obstacle, of at most `CAP`.
     #[inline(always)]
     pub fn push(&mut self, sample: &Sample<S, D>) {
-        // Where there is one lane, this is a constant.
+        // Where there is one lane, this is zero.
         let lane = self.lane % LANES;
         if lane == 0 {
             let _ = self.groups.push(Group::new(sample));
@@ -127,7 +127,9 @@ impl<S: Scalar, const D: usize, const CAP: usize> Modulation<S, D, CAP> {
                 group.surface_velocity[d][lane] = sample.surface_velocity[d];
             }
         }
-        self.lane = (lane + 1) % LANES;
+        if LANES > 1 {
+            self.lane = lane + 1;
+        }
     }
 
     /// The velocity past all of them and past one more, if there is one, m/s; and whether one of their reference points was unusable. `gamma` is
@@ -138,10 +140,10 @@ impl<S: Scalar, const D: usize, const CAP: usize> Modulation<S, D, CAP> {
         let one = match (self.groups.as_slice(), &last) {
             ([], None) => return (self.f.into(), false),
             ([], Some(one)) => one,
-            ([one], None) if self.lane == 1 % LANES => one,
+            ([one], None) if self.lane <= 1 => one,
             (groups, last) => {
-                let nearest = last.as_ref().map_or(gamma, |last| gamma.min(last.gamma[0])) - S::one();
-                let mut mean = DirectionalMean::new(&self.f, nearest);
+                let gamma = last.as_ref().map_or(gamma, |last| gamma.min(last.gamma[0]));
+                let mut mean = DirectionalMean::new(&self.f, (gamma - S::one()).max(S::zero()));
                 mean.take(groups);
                 if let Some(last) = last {
                     mean.take(core::slice::from_ref(last));
@@ -154,16 +156,11 @@ impl<S: Scalar, const D: usize, const CAP: usize> Modulation<S, D, CAP> {
     }
 }
 
-/// A weight proportional to 1/(Gamma - 1), scaled so that the nearest obstacle's is one: no overflow, and on a surface that
-/// obstacle alone counts.
+/// A weight proportional to 1/(Gamma - 1), scaled so that the nearest obstacle's is one: no overflow, and where the nearest is touched (its Gamma - 1,
+/// cut off at zero, is zero) those that are touched alone count.
+#[inline(always)]
 pub(crate) fn weight<S: Scalar>(distance: S, nearest: S) -> S {
-    if nearest > S::zero() {
-        nearest / distance
-    } else if distance <= S::zero() {
-        S::one()
-    } else {
-        S::zero()
-    }
+    if distance > nearest { nearest / distance } else { S::one() }
 }
 
 /// Sine of the angle to "exactly opposite to f" from which the mean of angles gives way to the plain mean.
@@ -189,7 +186,7 @@ struct DirectionalMean<S: Scalar, const D: usize> {
     nominal: S,
     /// f/|f|; zero where f is.
     forward: Vector<S, D>,
-    /// The least Gamma - 1.
+    /// The least Gamma - 1, or zero if that is below.
     nearest: S,
     sum: S,
     speed: S,

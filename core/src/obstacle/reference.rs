@@ -1,7 +1,7 @@
 //! Where an obstacle's reference point is.
 
 use super::Obstacle;
-use crate::{Scalar, Vector, is_zero, times};
+use crate::{Scalar, Vector, is_zero, times, transposed_times};
 
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// The reference point in the world's frame, m: its own, or one that it shares with obstacles it overlaps.
@@ -11,13 +11,13 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// Below 1 where its reference point may be (not a wall's): Gamma, but of a polygon by what is seen from there.
     pub(crate) fn sight(&self, x: &Vector<S, D>) -> S {
-        self.body.sight(&self.spec.shape, &self.local(x).component_mul(&self.hard)).0
+        self.body.sight(&self.spec.shape, &self.scaled(x)).0
     }
 
     /// The direction in which that grows.
     pub(crate) fn sight_slope(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        let u = self.local(x).component_mul(&self.hard);
-        times(&self.spec.rotation, &self.body.sight(&self.spec.shape, &u).1.component_mul(&self.hard))
+        let u = self.scaled(x);
+        transposed_times(&self.scaling, &self.body.sight(&self.spec.shape, &u).1)
     }
 
     /// Takes a reference point (world's frame, m) in common with others, or its own again.

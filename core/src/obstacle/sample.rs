@@ -1,7 +1,7 @@
 //! An obstacle as it looks from one point.
 
 use super::Obstacle;
-use crate::{Scalar, Vector, times, unit};
+use crate::{Scalar, Vector, times, transposed_times, unit};
 
 /// What the modulation wants to know of an obstacle.
 #[derive(Clone, Debug)]
@@ -43,9 +43,9 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// How it looks from x.
     #[inline(always)]
     pub(crate) fn sample(&self, x: &Vector<S, D>) -> Sample<S, D> {
-        let q = self.local(x);
-        let (gamma, direction) = self.level(&q.component_mul(&self.hard));
-        let shape_normal = times(&self.spec.rotation, &direction.component_mul(&self.hard));
+        let away = x - self.spec.center;
+        let (gamma, direction) = self.level(&times(&self.scaling, &away));
+        let shape_normal = transposed_times(&self.scaling, &direction);
         let mut surface_velocity = Vector::zeros();
         if self.moves {
             surface_velocity = self.surface_velocity(x);
@@ -53,7 +53,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
                 surface_velocity += unit(&shape_normal).1 * self.swelling;
             }
         }
-        let arm = x - self.spec.center - self.offset;
+        let arm = away - self.offset;
         Sample { gamma, outward: shape_normal, arm, surface_velocity }
     }
 
@@ -65,7 +65,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// The soft layer at x, if x is in it and not in the core, from what was sampled there.
     #[inline(never)]
-    pub(crate) fn soft_layer(&self, x: &Vector<S, D>, sample: &Sample<S, D>) -> Option<SoftLayer<S, D>> {
+    pub(crate) fn soft_layer(&self, x: &Vector<S, D>, sample: Sample<S, D>) -> Option<SoftLayer<S, D>> {
         let gamma_soft = self.gamma_soft(x);
         let normal = unit(&sample.outward).1;
         (sample.gamma > S::one() && gamma_soft <= S::one()).then(|| SoftLayer {

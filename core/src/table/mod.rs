@@ -208,7 +208,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     ) {
         // Here rather than in there, where each obstacle would load and store it.
         let mut modulation: Modulation<S, D, CAP> = Modulation::new(&around.velocity);
-        let (mut gamma, mut nearest) = (around.gamma, None);
+        let (mut gamma, mut nearest) = (S::MAX, None);
         for (index, entry) in self.entries.iter().enumerate() {
             let sample = entry.obstacle.sample(x);
             if let Some((reach, dt)) = reach {
@@ -225,7 +225,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             // The usual answer first.
             if entry.obstacle.may_be_soft(sample.gamma)
                 && deformable
-                && let Some(layer) = entry.obstacle.soft_layer(x, &sample)
+                && let Some(layer) = entry.obstacle.soft_layer(x, sample.clone())
             {
                 // Cannot be full: it has the table's own capacity.
                 let _ = around.soft.push(layer);
