@@ -67,8 +67,11 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     #[inline(never)]
     pub(crate) fn soft_layer(&self, x: &Vector<S, D>, sample: Sample<S, D>) -> Option<SoftLayer<S, D>> {
         let gamma_soft = self.gamma_soft(x);
+        if !(sample.gamma > S::one() && gamma_soft <= S::one()) {
+            return None;
+        }
         let normal = unit(&sample.outward).1;
-        (sample.gamma > S::one() && gamma_soft <= S::one()).then(|| SoftLayer {
+        Some(SoftLayer {
             gamma_soft: gamma_soft.max(S::from_f64(1e-9)),
             fade: ((S::one() - gamma_soft) * S::from_f64(FADING)).min(S::one()),
             normal: if self.spec.wall { -normal } else { normal },
