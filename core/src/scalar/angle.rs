@@ -2,8 +2,6 @@
 //!
 //! The coefficients minimise the largest error (Remez), relative to the function for the sine and the arc tangent.
 
-use core::array::from_fn;
-
 use super::Scalar;
 
 /// A number as an unevaluated sum of a leading part and a correction: constants that have more digits than the type.
@@ -76,19 +74,33 @@ impl<S: Scalar, const N: usize> ArcTangent<S, N> {
     /// The lengths and angles of several points, with the bits of [`Self::polar`].
     #[inline(always)]
     pub fn polars<const M: usize>(&self, y: &[S; M], x: &[S; M], root: impl Fn(S) -> S) -> ([S; M], [S; M]) {
+        let (mut length, mut angle) = ([S::zero(); M], [S::zero(); M]);
         if BRANCHES {
-            let each: [(S, S); M] = from_fn(|i| self.polar(y[i], x[i], &root));
-            return (from_fn(|i| each[i].0), from_fn(|i| each[i].1));
+            for i in 0..M {
+                (length[i], angle[i]) = self.polar(y[i], x[i], &root);
+            }
+            return (length, angle);
+        }
+        let (mut under, mut squared, mut factor) = (length, length, length);
+        for i in 0..M {
+            let reduced = self.reduced(y[i], x[i]);
+            (under[i], squared[i], factor[i], angle[i]) =
+                (reduced.under, reduced.squared, reduced.factor, reduced.angle);
         }
         // Roots apart: with them among the rest, compilers would do all of it one by one.
-        let each: [Reduced<S>; M] = from_fn(|i| self.reduced(y[i], x[i]));
-        (from_fn(|i| each[i].length(&root)), from_fn(|i| each[i].angle))
+        for i in 0..M {
+            squared[i] = root(squared[i]);
+        }
+        for i in 0..M {
+            length[i] = under[i] * squared[i] * factor[i];
+        }
+        (length, angle)
     }
 
     #[inline(always)]
     fn anywhere(&self, y: S, x: S, root: impl Fn(S) -> S) -> (S, S) {
-        let reduced = self.reduced(y, x);
-        (reduced.length(root), reduced.angle)
+        let Reduced { under, squared, factor, angle } = self.reduced(y, x);
+        (under * root(squared) * factor, angle)
     }
 
     #[inline(always)]
@@ -127,13 +139,6 @@ struct Reduced<S> {
     squared: S,
     factor: S,
     angle: S,
-}
-
-impl<S: Scalar> Reduced<S> {
-    #[inline(always)]
-    fn length(&self, root: impl Fn(S) -> S) -> S {
-        self.under * root(self.squared) * self.factor
-    }
 }
 
 /// What sine and cosine need.
