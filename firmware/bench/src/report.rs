@@ -112,7 +112,6 @@ impl<C: Clock, W: Write> Bench<'_, C, W> {
         const K: usize = 4;
         self.cases::<Fixed, 2, 8>(0, K)?;
         self.cases::<Fixed, 2, 8>(8, K)?;
-        self.upserts::<Fixed, 2, 8>()?;
         self.bits::<Fixed>()
     }
 
