@@ -14,13 +14,13 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// Below 1 where its reference point may be (not a wall's): Gamma, but of a polygon by what is seen from there.
     pub(crate) fn sight(&self, x: &Vector<S, D>) -> S {
-        self.body.sight(&self.spec.shape, &self.local(x).component_mul(&self.hard)).0
+        self.body.sight(&self.spec.shape, &self.scaled(x)).0
     }
 
     /// The direction in which that grows.
     pub(crate) fn sight_slope(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        let u = self.local(x).component_mul(&self.hard);
-        times(&self.spec.rotation, &self.body.sight(&self.spec.shape, &u).1.component_mul(&self.hard))
+        let u = self.scaled(x);
+        transposed_times(&self.scaling, &self.body.sight(&self.spec.shape, &u).1)
     }
 
     /// The reference point of the root of the tree it belongs to (world's frame, m), where r leads from as far as it can; see [`Obstacle::arm`].

@@ -126,7 +126,11 @@ macro_rules! scalar {
             }
             #[inline(always)]
             fn polar(x: Self, y: Self) -> (Self, Self) {
-                $angle.polar(y, x, |u| Scalar::sqrt(1.0 + u))
+                $angle.polar(y, x, Scalar::sqrt)
+            }
+            #[inline(always)]
+            fn polars<const N: usize>(x: &[Self; N], y: &[Self; N]) -> ([Self; N], [Self; N]) {
+                $angle.polars(y, x, Scalar::sqrt)
             }
             #[inline(always)]
             fn rounding(size: Self) -> Self {

@@ -74,6 +74,15 @@ pub trait Scalar:
     /// Length and angle (as [`Scalar::atan2`]) of the point (x, y): for little more than the angle. Error of the length: 2e-16 (`f64`), 2e-7 (`f32`) of
     /// it, half a step and 4e-8 of it ([`Fixed`]).
     fn polar(x: Self, y: Self) -> (Self, Self);
+    /// The same of several points, with the same bits.
+    #[inline(always)]
+    fn polars<const N: usize>(x: &[Self; N], y: &[Self; N]) -> ([Self; N], [Self; N]) {
+        let (mut length, mut angle) = ([Self::zero(); N], [Self::zero(); N]);
+        for (i, (x, y)) in x.iter().zip(y).enumerate() {
+            (length[i], angle[i]) = Self::polar(*x, *y);
+        }
+        (length, angle)
+    }
     /// A bound on the rounding error of one product of terms of this size.
     fn rounding(size: Self) -> Self;
     /// Euclidean length, for components whose squares need not fit in fixed point.
