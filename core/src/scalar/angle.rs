@@ -88,8 +88,8 @@ impl<S: Scalar, const N: usize> ArcTangent<S, N> {
                 (reduced.under, reduced.squared, reduced.factor, reduced.angle);
         }
         // Roots apart: with them among the rest, compilers would do all of it one by one.
-        for i in 0..M {
-            squared[i] = root(squared[i]);
+        for squared in &mut squared {
+            *squared = root(*squared);
         }
         for i in 0..M {
             length[i] = under[i] * squared[i] * factor[i];
