@@ -43,6 +43,16 @@ impl Unit {
     }
 }
 
+impl std::fmt::Display for Unit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Unit::Mm => "mm",
+            Unit::Cm => "cm",
+            Unit::M => "m",
+        })
+    }
+}
+
 impl std::str::FromStr for Unit {
     type Err = String;
 
@@ -317,6 +327,11 @@ impl Demonstrations {
     /// Diagonal of the box around all positions, in metres.
     pub fn extent(&self) -> f64 {
         self.extent
+    }
+
+    /// Where each begins.
+    pub fn starts(&self) -> Vec<Vec<f64>> {
+        self.items.iter().map(|i| i.x[0].iter().copied().collect()).collect()
     }
 
     /// Number of samples in all recordings.

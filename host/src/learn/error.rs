@@ -104,6 +104,16 @@ pub enum LearnError {
         /// Its range.
         allowed: &'static str,
     },
+    /// A model to which a demonstration cannot be added.
+    #[error(
+        "{model}: no demonstration can be added: {problem}, and it does not say where its motions begin; learn from all demonstrations at once"
+    )]
+    Forgotten {
+        /// Path of the model.
+        model: String,
+        /// Why.
+        problem: String,
+    },
     /// The convex programme found no motion.
     #[error("no stable motion could be fitted: {reason}")]
     Fit {

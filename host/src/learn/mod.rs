@@ -12,6 +12,7 @@ mod error;
 pub mod evaluate;
 pub mod fit;
 pub mod gmm;
+pub mod memory;
 pub mod quality;
 pub mod read;
 mod smoothing;
@@ -23,7 +24,7 @@ pub use quality::Quality;
 pub use read::read;
 pub use warning::Warning;
 
-use crate::model::{ComponentFile, FORMAT, ModelFile};
+use crate::model::{ComponentFile, FORMAT, ModelFile, rounded};
 use evaluate::Motion;
 use gmm::{MAX_COMPONENTS, Mixture, Samples};
 use nalgebra::{SMatrix, SVector};
@@ -241,12 +242,6 @@ fn denormalise<const D: usize>(
         component,
         learnt: None,
     }
-}
-
-/// The shortest decimal that is the nearest f32: short to read, and the same on every machine.
-fn rounded(x: f64) -> f64 {
-    let nearest = x as f32 + 0.0;
-    format!("{nearest:e}").parse().unwrap_or(f64::from(nearest))
 }
 
 /// The motion of a model in f64, for the dimension D; `None` where the model is of another dimension or not valid.

@@ -230,13 +230,12 @@ mod tests {
 
     #[test]
     fn every_layout_of_one_motion_is_the_same_demonstration() {
-        let columns = [2.0, 1.5, 0.0, 1.0, 0.5, 0.0];
         let one = read_arrays(&[("x", &[3, 2], &X), ("t", &[3], &T)]).expect("valid");
         assert_eq!(one.len(), 1);
         assert_eq!(one[0].x[1].as_slice(), [1.5, 0.5]);
         let layouts: [&[(&str, &[usize], &[f64])]; 5] = [
             &[("positions", &[3, 2], &X), ("times", &[3, 1], &T)],
-            &[("pos", &[2, 3], &columns), ("time", &[1, 3], &T)],
+            &[("pos", &[3, 2], &X), ("time", &[1, 3], &T)],
             &[("x", &[1, 3, 2], &X), ("t", &[1, 3], &T)],
             &[("x_0", &[3, 2], &X), ("t_0", &[3], &T)],
             &[("x7", &[3, 2], &X), ("dt", &[], &[0.5])],
@@ -244,6 +243,16 @@ mod tests {
         for layout in layouts {
             assert_eq!(read_arrays(layout).expect("valid"), one);
         }
+    }
+
+    #[test]
+    fn axes_may_come_first() {
+        let rows = [3.0, 4.0, 2.0, 3.0, 1.0, 1.0, 0.0, 0.0];
+        let columns = [3.0, 2.0, 1.0, 0.0, 4.0, 3.0, 1.0, 0.0];
+        let dt: (&str, &[usize], &[f64]) = ("dt", &[1], &[0.1]);
+        let by_rows = read_arrays(&[("x", &[4, 2], &rows), dt]).expect("valid");
+        assert_eq!(read_arrays(&[("x", &[2, 4], &columns), dt]).expect("valid"), by_rows);
+        assert_eq!(read_arrays(&[("x", &[1, 2, 4], &columns), dt]).expect("valid"), by_rows);
     }
 
     #[test]
