@@ -76,6 +76,13 @@ pub fn search(a: &[DMatrix<f64>]) -> Result<DMatrix<f64>, NoneFound> {
     if margin < 0.0 { Ok(p) } else { Err(NoneFound { margin, unstable: None, tight }) }
 }
 
+/// How far A_k'P + PA_k is below zero, as a part of |A_k|, for the k where it is least, and that k.
+pub fn margin(a: &[DMatrix<f64>], p: &DMatrix<f64>) -> (f64, usize) {
+    let scaled: Vec<_> = a.iter().map(|a| a / a.norm()).collect();
+    let (value, k, _) = largest(&scaled, p);
+    (-value, k)
+}
+
 /// An orthonormal basis of symmetric matrices without trace.
 fn traceless(d: usize) -> Vec<DMatrix<f64>> {
     let mut basis = Vec::new();

@@ -14,6 +14,9 @@ use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 use std::path::Path;
 
+/// By so much more the other order of A must follow the components before a person is asked.
+const ORDER_DOUBTED: f64 = 0.25;
+
 /// Why a file of another tool is no model here.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ImportError {
@@ -134,7 +137,8 @@ impl std::str::FromStr for Means {
 pub struct Layout {
     /// The unit of lengths; m where it is not declared.
     pub unit: Option<Unit>,
-    /// The order of matrices; by the name of the file where it is not declared: rows in .json, columns in .yml.
+    /// The order of matrices; by the name of the file where it is not declared (rows in .json, columns in .yml), unless only the other
+    /// can be meant.
     pub order: Option<Order>,
     /// The order of means; component by component where it is not declared, unless only the other can be meant.
     pub means: Option<Means>,
@@ -184,7 +188,7 @@ pub fn parse(file: &str, bytes: &[u8], layout: Layout) -> Result<Imported, Impor
         line: fault.line,
         problem: fault.problem,
     })?;
-    Table { file, fields }.imported(Layout { order: layout.order.or(Some(order)), ..layout })
+    Table { file, fields }.imported(layout, order)
 }
 
 struct Table<'a> {
@@ -240,7 +244,7 @@ impl Table<'_> {
         Err(self.fault(name, field, format!("is {value}"), format!("{} to {}", range.start(), range.end())))
     }
 
-    fn imported(&self, layout: Layout) -> Result<Imported, ImportError> {
+    fn imported(&self, layout: Layout, usual: Order) -> Result<Imported, ImportError> {
         if self.find(&["A"]).is_none() && self.find(&["dim", "Mu_scale"]).is_some() {
             return Err(ImportError::Seds { file: self.file.into() });
         }
@@ -249,7 +253,7 @@ impl Table<'_> {
         let length = layout.unit.unwrap_or(Unit::M).metres();
         let matrices = |names: &[&'static str], what: &str| -> Result<Vec<DMatrix<f64>>, ImportError> {
             let (values, nested) = self.numbers(names, k * d * d, what)?;
-            let by_columns = layout.order == Some(Order::Columns) && !nested;
+            let by_columns = layout.order.unwrap_or(usual) == Order::Columns && !nested;
             let block = |m: &[f64]| {
                 if by_columns { DMatrix::from_column_slice(d, d, m) } else { DMatrix::from_row_slice(d, d, m) }
             };
@@ -264,9 +268,13 @@ impl Table<'_> {
         }
         let covariances = matrices(&["Sigma"], "component by component")?;
         let a = matrices(&["A"], "component by component")?;
+        let (_, a_is_nested) = self.numbers(&["A"], k * d * d, "component by component")?;
         let (attractor, _) = self.numbers(&["attractor"], d, "the place where the motion ends")?;
 
         let means = self.means(k, d, &covariances, attractor, layout.means)?;
+        if layout.order.is_none() && !a_is_nested {
+            self.check_order(&a, &means, &covariances, attractor)?;
+        }
         let rows =
             |m: &DMatrix<f64>| (0..d).map(|r| (0..d).map(|c| rounded(m[(r, c)])).collect()).collect::<Vec<Vec<f64>>>();
         let component = (0..k)
@@ -337,6 +345,38 @@ impl Table<'_> {
         }
     }
 
+    /// The transposed A_k have a proof too (P^-1), but another motion. Where demonstrations went, components are long; a motion that goes
+    /// across them in the order read, and along them in the other, was written in the other.
+    fn check_order(
+        &self,
+        a: &[DMatrix<f64>],
+        means: &[DVector<f64>],
+        covariances: &[DMatrix<f64>],
+        attractor: &[f64],
+    ) -> Result<(), ImportError> {
+        let attractor = DVector::from_column_slice(attractor);
+        let along = |transposed: bool| {
+            let cosines = a.iter().zip(means).zip(covariances).map(|((a, mean), covariance)| {
+                let offset = mean - &attractor;
+                let v = if transposed { a.tr_mul(&offset) } else { a * offset };
+                let eigen = covariance.clone().symmetric_eigen();
+                let axis = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned();
+                (axis.dot(&v) / v.norm().max(f64::MIN_POSITIVE)).abs()
+            });
+            cosines.sum::<f64>() / a.len() as f64
+        };
+        let (read, other) = (along(false), along(true));
+        match self.find(&["A"]) {
+            Some((name, field)) if other > read + ORDER_DOUBTED => {
+                let problem = format!(
+                    "as read moves across the components (mean cosine to their long axes {read:.2}), and transposed along them ({other:.2})"
+                );
+                Err(self.fault(name, field, problem, "either, if --order rows or --order columns says which".into()))
+            }
+            _ => Ok(()),
+        }
+    }
+
     fn name(&self) -> String {
         match self.fields.get("name").map(|f| &f.value) {
             Some(Value::Text(text)) if !text.is_empty() => text.chars().filter(|c| !c.is_control()).take(80).collect(),
@@ -362,7 +402,13 @@ impl Table<'_> {
         }
         let problem = match lyapunov::search(a) {
             Ok(p) if holds(&p) => return Ok(if given.is_some() { Proof::Replaced } else { Proof::Found }),
-            Ok(_) => "a P exists, but the proof is too tight for the digits of f32".to_owned(),
+            Ok(p) => {
+                let (margin, k) = lyapunov::margin(a, &p);
+                format!(
+                    "the best P has a margin of {margin:.1e} of |A|, at component {}, and f32 needs more than its rounding, some 1e-6",
+                    k + 1
+                )
+            }
             Err(none) => match none.unstable {
                 Some(k) => format!(
                     "component {} by itself leads away from the attractor (its A has an eigenvalue with a real part of 0 or more)",

@@ -148,8 +148,8 @@ fn motion<const D: usize>(model: &ModelFile, name: String, start: &[f64]) -> Opt
 /// How to get from the folder of `file` to `to`; `to` as it is where that cannot be said.
 fn relative(file: &Path, to: &Path) -> String {
     let plain = || to.to_string_lossy().into_owned();
-    let folder = file.parent().unwrap_or(Path::new(""));
-    let (Ok(from), Ok(target)) = (std::path::absolute(folder), std::path::absolute(to)) else { return plain() };
+    let (Ok(from), Ok(target)) = (std::path::absolute(file), std::path::absolute(to)) else { return plain() };
+    let from = from.parent().unwrap_or(&from);
     let (from, target): (Vec<_>, Vec<_>) = (from.components().collect(), target.components().collect());
     let common = from.iter().zip(&target).take_while(|(a, b)| a == b).count();
     if common == 0 || from[common..].contains(&Component::ParentDir) {
@@ -169,6 +169,8 @@ mod tests {
         let from = |file: &str, to: &str| relative(Path::new(file), Path::new(to));
         assert_eq!(from("models/a.toml", "demos/a"), "../demos/a");
         assert_eq!(from("a.toml", "demos/a.csv"), "demos/a.csv");
+        let here = std::path::absolute("demos/a.csv").expect("a working folder");
+        assert_eq!(relative(Path::new("a.toml"), &here), "demos/a.csv");
         assert_eq!(from("/x/y/a.toml", "/x/b.csv"), "../b.csv");
     }
 }
