@@ -12,6 +12,8 @@ const STILL: f64 = 0.002;
 const STILL_AT_MOST: f64 = 0.01;
 /// Standing still for this part of the duration is a rest and not the turn of a stroke.
 const REST: f64 = 0.08;
+/// At its end a motion does come to rest: only what would outweigh the motion is left out.
+const REST_AT_END: f64 = 0.25;
 
 /// Times, positions and, where they are known, velocities: one each a sample.
 #[derive(Debug, Clone, Default)]
@@ -129,13 +131,13 @@ impl Samples {
         let coarse = self.thinned(MOST_SAMPLES);
         let size = coarse.size();
         let radius = (STILL * size + 4.0 * coarse.noise()).min(STILL_AT_MOST * size);
-        let shortest = REST * self.duration();
         let n = coarse.len();
         let mut rests = Vec::new();
         let mut i = 0;
         while i < n {
             let end = (i + 1..n).find(|&j| (&coarse.x[j] - &coarse.x[i]).norm() > radius).unwrap_or(n) - 1;
-            if end > i + 1 && coarse.t[end] - coarse.t[i] >= shortest {
+            let least = if end + 1 == n { REST_AT_END } else { REST };
+            if end > i + 1 && coarse.t[end] - coarse.t[i] >= least * coarse.duration() {
                 rests.push(Rest { from: coarse.t[i], to: coarse.t[end] });
                 i = end;
             } else {
@@ -204,5 +206,93 @@ impl Samples {
             }
         }
         out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A stroke of a second, with rests of the given lengths before, in the middle and after; 100 samples a second.
+    fn with_rests(rests: [f64; 3]) -> Samples {
+        let mut out = Samples::default();
+        let total = 1.0 + rests.iter().sum::<f64>();
+        let mut push = |t: f64| {
+            let s =
+                if t < rests[0] + 0.5 { (t - rests[0]).max(0.0) } else { (t - rests[0] - rests[1]).clamp(0.5, 1.0) };
+            out.t.push(t);
+            out.x.push(DVector::from_vec(vec![(1.0 - s) * (2.0 * s).cos(), 0.5 * (1.0 - s)]));
+        };
+        (0..=(total * 100.0).round() as usize).for_each(|i| push(i as f64 / 100.0));
+        out
+    }
+
+    #[test]
+    fn rests_are_found_and_left_out() {
+        let plain = with_rests([0.0; 3]);
+        assert_eq!(plain.rests(), []);
+        for rests in [[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.8], [0.3, 0.4, 1.0]] {
+            let samples = with_rests(rests);
+            let found = samples.rests();
+            let wanted = rests.iter().filter(|r| **r > 0.0).count();
+            assert_eq!(found.len(), wanted, "{rests:?}: {found:?}");
+            let clean = samples.without(&found);
+            assert!((clean.duration() - 1.0).abs() < 0.05, "{rests:?}: {}", clean.duration());
+            assert!((clean.x.last().expect("some") - plain.x.last().expect("some")).norm() < 0.01);
+            assert!(clean.t.windows(2).all(|w| w[1] > w[0]));
+            assert!(clean.largest_step().expect("some").1 < 0.05, "{rests:?}");
+        }
+    }
+
+    #[test]
+    fn a_short_stop_at_the_end_stays() {
+        assert_eq!(with_rests([0.0, 0.0, 0.2]).rests(), []);
+    }
+
+    #[test]
+    fn noise_is_measured() {
+        let mut samples = with_rests([0.0; 3]);
+        assert!(samples.noise() < 2e-4, "{}", samples.noise());
+        // A normal deviate, near enough: the sum of twelve uniform ones.
+        let mut state = 1_u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        samples.x.iter_mut().for_each(|p| p.apply(|c| *c += 0.01 * ((0..12).map(|_| uniform()).sum::<f64>() - 6.0)));
+        assert!((samples.noise() / 0.01 - 1.0).abs() < 0.35, "{}", samples.noise());
+    }
+
+    proptest! {
+        #[test]
+        fn thinning_keeps_the_ends_and_the_order(n in 2usize..5000, limit in 0usize..400) {
+            let samples = Samples {
+                t: (0..n).map(|i| 5.0 + i as f64).collect(),
+                x: (0..n).map(|i| DVector::from_element(2, i as f64)).collect(),
+                v: Some(vec![DVector::from_element(2, 1.0); n]),
+            };
+            let few = samples.thinned(limit);
+            prop_assert!(few.len() >= 2 && few.len() <= limit.max(2) + 2, "{}", few.len());
+            prop_assert_eq!((few.t[0], few.t[few.len() - 1]), (5.0, 4.0 + n as f64));
+            prop_assert!(few.t.windows(2).all(|w| w[1] > w[0]));
+            // Position and time are averaged alike.
+            prop_assert!(few.t.iter().zip(&few.x).all(|(t, x)| (t - 5.0 - x[0]).abs() < 1e-9 * n as f64));
+            prop_assert!(few.v.expect("given").iter().all(|v| (v[0] - 1.0).abs() < 1e-12));
+        }
+
+        #[test]
+        fn interpolation_is_exact_for_cubics(n in 3usize..40, count in 2usize..100) {
+            let x = |t: f64| DVector::from_vec(vec![1.0 - 2.0 * t + t * t * t, t * t]);
+            let v = |t: f64| DVector::from_vec(vec![-2.0 + 3.0 * t * t, 2.0 * t]);
+            let t: Vec<f64> = (0..n).map(|i| 2.0 * i as f64 / (n - 1) as f64).collect();
+            let samples = Samples { x: t.iter().map(|&t| x(t)).collect(), v: Some(t.iter().map(|&t| v(t)).collect()), t };
+            let many = samples.interpolated(count);
+            prop_assert_eq!(many.len(), count);
+            let velocities = many.v.expect("given");
+            for (i, &t) in many.t.iter().enumerate() {
+                prop_assert!((&many.x[i] - x(t)).norm() < 1e-9 && (&velocities[i] - v(t)).norm() < 1e-9, "{t}");
+            }
+        }
     }
 }
