@@ -179,7 +179,7 @@ fn demonstrations() {
     folder.write("b.csv", "t,x,y,z\n0,0.3,0.2,0\n0.5,0.2,0.1,0\n1,0,0,0\n");
     refused(&folder, &["learn", "a.csv", "b.csv"], &["b.csv"]);
     refused(&folder, &["learn", "nowhere.csv"], &["nowhere.csv"]);
-    refused(&folder, &["learn", "."], &["empty"]);
+    refused(&folder, &["learn", "."], &["back.csv"]);
     refused(&folder, &["learn"], &["DEMO"]);
 }
 

@@ -405,7 +405,7 @@ impl Table<'_> {
             Ok(p) => {
                 let (margin, k) = lyapunov::margin(a, &p);
                 format!(
-                    "the best P has a margin of {margin:.1e} of |A|, at component {}, and f32 needs more than its rounding, some 1e-6",
+                    "the best P has a margin of {margin:.1e} of |A|, at component {}, which the rounding of f32 uses up",
                     k + 1
                 )
             }
