@@ -168,13 +168,8 @@ impl ModelFile {
             (0..d).map(|i| (0..d).map(|j| rounded(m[(i, j)])).collect()).collect::<Vec<Vec<f64>>>()
         };
         let symmetric = |m: &[Vec<f64>], factor: f64| {
-            let mut m = matrix(m, factor);
-            for i in 0..d {
-                for j in 0..i {
-                    m[i][j] = m[j][i];
-                }
-            }
-            m
+            let m = matrix(m, factor);
+            (0..d).map(|i| (0..d).map(|j| m[i.max(j)][i.min(j)]).collect()).collect::<Vec<Vec<f64>>>()
         };
         let point = |p: &[f64]| by.place(&self.attractor, p).into_iter().map(rounded).collect::<Vec<f64>>();
         let moved = Self {

@@ -220,11 +220,13 @@ mod tests {
     const T: [f64; 3] = [0.0, 0.5, 1.0];
     const X: [f64; 6] = [2.0, 1.0, 1.5, 0.5, 0.0, 0.0];
 
-    fn read_arrays(arrays: &[(&str, &[usize], &[f64])]) -> Result<Vec<Demonstration>, LearnError> {
+    type Arrays<'a> = [(&'a str, &'a [usize], &'a [f64])];
+
+    fn read_arrays(arrays: &Arrays) -> Result<Vec<Demonstration>, LearnError> {
         read("a.npz", &writer::file(arrays, true))
     }
 
-    fn refused(arrays: &[(&str, &[usize], &[f64])]) -> String {
+    fn refused(arrays: &Arrays) -> String {
         read_arrays(arrays).expect_err("must be refused").to_string()
     }
 
@@ -233,7 +235,7 @@ mod tests {
         let one = read_arrays(&[("x", &[3, 2], &X), ("t", &[3], &T)]).expect("valid");
         assert_eq!(one.len(), 1);
         assert_eq!(one[0].x[1].as_slice(), [1.5, 0.5]);
-        let layouts: [&[(&str, &[usize], &[f64])]; 5] = [
+        let layouts: [&Arrays; 5] = [
             &[("positions", &[3, 2], &X), ("times", &[3, 1], &T)],
             &[("pos", &[3, 2], &X), ("time", &[1, 3], &T)],
             &[("x", &[1, 3, 2], &X), ("t", &[1, 3], &T)],
