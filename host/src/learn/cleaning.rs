@@ -136,7 +136,10 @@ impl Samples {
         let mut i = 0;
         while i < n {
             let end = (i + 1..n).find(|&j| (&coarse.x[j] - &coarse.x[i]).norm() > radius).unwrap_or(n) - 1;
-            let least = if end + 1 == n { REST_AT_END } else { REST };
+            // Creeping towards the end counts as being there.
+            let last = &coarse.x[n - 1];
+            let at_end = coarse.x[i..].iter().all(|p| (p - last).norm() <= 2.0 * STILL_AT_MOST * size);
+            let least = if at_end { REST_AT_END } else { REST };
             if end > i + 1 && coarse.t[end] - coarse.t[i] >= least * coarse.duration() {
                 rests.push(Rest { from: coarse.t[i], to: coarse.t[end] });
                 i = end;
