@@ -5,20 +5,25 @@ use std::time::Instant;
 
 use serde_json::json;
 
-use super::{Finished, print_json, progress};
+use super::{Finished, print_json, progress, warn};
 use crate::error::Outcome;
-use crate::learn::{Options, Unit, learn};
+use crate::learn::{Demonstrations, Options, Unit, learn_from, memory, read};
+use crate::model::ModelFile;
 
 /// Options of `pliant learn`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Args {
-    /// Demonstrations of one skill: .mat (LASA), .csv with header t,x,y[,z], folders of them.
+    /// Demonstrations of one skill: .mat (LASA), .npz, .csv with header t,x,y[,z], folders of them.
     #[arg(required = true, value_name = "DEMO")]
     demos: Vec<PathBuf>,
-    /// Where to write the model (NAME.toml in the working folder, by the first demonstration's name, if not given).
+    /// Add them to those this model was learnt from, and learn it anew.
+    #[arg(long, value_name = "MODEL.toml")]
+    add_to: Option<PathBuf>,
+    /// Where to write the model (if not given: the model that is added to, or else NAME.toml in the working folder, by the first
+    /// demonstration's name).
     #[arg(short, long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
-    /// Unit of lengths in the files: mm, cm or m (.mat: cm, so that LASA handwriting is ten times its size; .csv: m).
+    /// Unit of lengths in the files: mm, cm or m (.mat: cm, so that LASA handwriting is ten times its size; .csv, .npz: m).
     #[arg(long)]
     unit: Option<Unit>,
     /// Number of components, 1 to 16 (chosen from 1 to 8 if not given).
@@ -35,7 +40,7 @@ pub struct Args {
 pub(super) fn main(args: &Args, json: bool) -> Finished {
     let stem =
         args.demos.first().and_then(|p| p.file_stem()).map_or("skill".into(), |s| s.to_string_lossy().to_lowercase());
-    let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.toml")));
+    let out = args.out.clone().or(args.add_to.clone()).unwrap_or_else(|| PathBuf::from(format!("{stem}.toml")));
     let name = out.file_stem().map_or(stem, |s| s.to_string_lossy().into_owned());
     let options = Options {
         name,
@@ -45,19 +50,31 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         sigma: args.sigma,
         ..Options::default()
     };
+    let new = read::recordings(&args.demos, args.unit)?;
+    let (demonstrations, mut sources) = match &args.add_to {
+        None => (Demonstrations::new(new)?, vec![]),
+        Some(old) => memory::with(&ModelFile::read(old)?, old, new)?,
+    };
+    let complete = args.add_to.is_none() || !sources.is_empty();
+    sources.extend(args.demos.iter().map(|path| memory::Source { path: path.clone(), unit: args.unit }));
+    warn(demonstrations.warnings());
     let bar = progress::bar(json);
     bar.set_message("learning");
     let begin = Instant::now();
-    let learnt = learn(&args.demos, &options, &|done| bar.set_position((done * 1000.0) as u64))?;
+    let mut learnt = learn_from(demonstrations, &options, &|done| bar.set_position((done * 1000.0) as u64))?;
     let seconds = begin.elapsed().as_secs_f64();
     bar.finish_and_clear();
+    // Where the old demonstrations are gone, the new files alone are not what it was learnt from.
+    let sources = if complete { &sources[..] } else { &[] };
+    memory::note(&mut learnt.model, &out, sources, &learnt.demonstrations.starts());
     learnt.model.write(&out)?;
+    let warnings: Vec<_> = learnt.demonstrations.warnings().iter().map(ToString::to_string).collect();
     let (k, q, demonstrations) = (learnt.model.component.len(), &learnt.quality, learnt.demonstrations.items().len());
     if json {
         print_json(&json!({
             "name": learnt.model.name, "model": out, "dimension": learnt.model.dimension, "k": k, "demonstrations": demonstrations,
             "rmse_m_s": q.rmse, "e_dot": q.e_dot, "dtwd_m": q.dtwd, "path_error_m": q.path_error,
-            "converged": q.converged, "rollouts": q.rollouts, "certified": true, "seconds": seconds,
+            "converged": q.converged, "rollouts": q.rollouts, "certified": true, "seconds": seconds, "warnings": warnings,
         }));
     } else {
         say!(

@@ -1,34 +1,34 @@
 //! Learning a skill from demonstrations.
 //!
-//! Files are read and checked ([`read`]), brought to one attractor, and normalised. For each number of components a
+//! Files are read and checked ([`read()`]), brought to one attractor, and normalised. For each number of components a
 //! Gaussian mixture is fitted, then P and A_k under the certificate; the number that follows the demonstrations
 //! best for its size is kept ([`learn`]). The result is a [`ModelFile`], rounded to f32 so that every machine runs the
 //! same numbers, with its certificate checked on them.
 
+mod cleaning;
 mod cone;
-pub mod csv;
 pub mod demonstration;
 mod error;
 pub mod evaluate;
 pub mod fit;
 pub mod gmm;
-pub mod lasa;
-pub mod mat;
-#[cfg(test)]
-mod mat_writer;
+pub mod memory;
 pub mod quality;
+pub mod read;
 mod smoothing;
+mod warning;
 
 pub use demonstration::{Demonstration, Demonstrations, Unit};
 pub use error::LearnError;
 pub use quality::Quality;
+pub use read::read;
+pub use warning::Warning;
 
-use crate::model::{ComponentFile, FORMAT, ModelFile};
+use crate::model::{ComponentFile, FORMAT, ModelFile, rounded};
 use evaluate::Motion;
 use gmm::{MAX_COMPONENTS, Mixture, Samples};
 use nalgebra::{SMatrix, SVector};
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Most components tried when their number is not given.
 const MOST_TRIED: usize = 8;
@@ -70,54 +70,6 @@ pub struct Learnt {
     pub tried: Vec<(usize, Quality)>,
     /// What it was learnt from, in metres and ending at the attractor.
     pub demonstrations: Demonstrations,
-}
-
-/// Reads the demonstrations of one skill from files and folders of them, in metres.
-pub fn read(paths: &[PathBuf], unit: Option<Unit>) -> Result<Demonstrations, LearnError> {
-    let mut items = Vec::new();
-    for path in paths {
-        let file = path.display().to_string();
-        if !path.exists() {
-            return Err(LearnError::Unreadable { file, source: std::io::ErrorKind::NotFound.into() });
-        }
-        if path.is_dir() {
-            let unreadable = |source| LearnError::Unreadable { file: file.clone(), source };
-            let mut inside = Vec::new();
-            for entry in fs::read_dir(path).map_err(unreadable)? {
-                let entry = entry.map_err(unreadable)?.path();
-                if matches!(extension(&entry).as_str(), "mat" | "csv") {
-                    inside.push(entry);
-                }
-            }
-            if inside.is_empty() {
-                return Err(LearnError::NoDemonstrations { file });
-            }
-            inside.sort();
-            for entry in inside {
-                items.extend(read_file(&entry, unit)?);
-            }
-        } else {
-            items.extend(read_file(path, unit)?);
-        }
-    }
-    Demonstrations::new(items)
-}
-
-fn extension(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
-}
-
-fn read_file(path: &Path, unit: Option<Unit>) -> Result<Vec<Demonstration>, LearnError> {
-    type Reader = fn(&str, &[u8]) -> Result<Vec<Demonstration>, LearnError>;
-    let file = path.display().to_string();
-    let (reader, default): (Reader, Unit) = match extension(path).as_str() {
-        "mat" => (lasa::read, Unit::Cm),
-        "csv" => (csv::read, Unit::M),
-        _ => return Err(LearnError::UnknownFormat { file }),
-    };
-    let bytes = fs::read(path).map_err(|source| LearnError::Unreadable { file: file.clone(), source })?;
-    let factor = unit.unwrap_or(default).metres();
-    Ok(reader(&file, &bytes)?.into_iter().map(|d| d.scaled(factor)).collect())
 }
 
 /// Learns a skill from files and folders. `progress` is told the part that is done, 0 to 1.
@@ -290,12 +242,6 @@ fn denormalise<const D: usize>(
         component,
         learnt: None,
     }
-}
-
-/// The shortest decimal that is the nearest f32: short to read, and the same on every machine.
-fn rounded(x: f64) -> f64 {
-    let nearest = x as f32 + 0.0;
-    format!("{nearest:e}").parse().unwrap_or(f64::from(nearest))
 }
 
 /// The motion of a model in f64, for the dimension D; `None` where the model is of another dimension or not valid.

@@ -171,29 +171,6 @@ fn rounding_is_to_f32_and_keeps_it() {
     assert!(rounded(-0.0).is_sign_positive());
 }
 
-#[test]
-fn files_and_folders_are_read_in_their_units() {
-    let folder = std::env::temp_dir().join(format!("pliant-learn-{}", std::process::id()));
-    fs::create_dir_all(&folder).expect("writable");
-    let csv = folder.join("a.csv");
-    fs::write(&csv, "t,x,y\n0,400,300\n1,0,0\n").expect("writable");
-    let mat = folder.join("b.mat");
-    fs::write(&mat, mat_writer::file(&mat_writer::demos(&[2], 9, true), true)).expect("writable");
-    let start = |path: &Path, unit| read(&[path.to_owned()], unit).expect("valid").items()[0].x[0].clone();
-    assert_eq!(start(&csv, Some(Unit::Mm)).as_slice(), [0.4, 0.3]);
-    assert_eq!(start(&csv, None).as_slice(), [400.0, 300.0]);
-    assert!((start(&mat, None) - DVector::from_vec(vec![0.1, 0.1])).norm() < 1e-12);
-    assert_eq!(read(std::slice::from_ref(&folder), Some(Unit::Mm)).expect("valid").items().len(), 2);
-
-    let text = |path: PathBuf| read(&[path], None).expect_err("must be refused").to_string();
-    assert!(text(folder.join("none.csv")).contains("cannot be read"));
-    fs::write(folder.join("c.txt"), "").expect("writable");
-    assert!(text(folder.join("c.txt")).contains("unknown format"));
-    fs::create_dir_all(folder.join("empty")).expect("writable");
-    assert!(text(folder.join("empty")).contains("no demonstrations here"));
-    fs::remove_dir_all(&folder).expect("removable");
-}
-
 /// The motions of the LASA set, where somebody has it: `PLIANT_LASA=folder`.
 #[test]
 fn every_lasa_motion_is_learnt_and_certified() {
@@ -202,9 +179,9 @@ fn every_lasa_motion_is_learnt_and_certified() {
         return;
     };
     let mut count = 0;
-    for entry in fs::read_dir(folder).expect("a folder") {
+    for entry in std::fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
-        if extension(&path) != "mat" {
+        if path.extension().is_none_or(|e| e != "mat") {
             continue;
         }
         let found = learn(std::slice::from_ref(&path), &Options::default(), &|_| ()).expect("learnable");
