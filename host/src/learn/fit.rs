@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, SMatrix};
 /// Largest ratio of P's eigenvalues: with more, f32 has no digits left for the certificate.
 pub const MAX_CONDITION: f64 = 100.0;
 /// Strictness of the inequality, in normalised units: far above what f32 rounds away.
-const MARGIN: f64 = 4e-3;
+pub const MARGIN: f64 = 4e-3;
 /// Rounds of adapting the basis of the 3x3 inequalities.
 const BASIS_ROUNDS: usize = 4;
 

@@ -10,6 +10,7 @@ pub mod csv;
 pub mod demonstration;
 mod error;
 pub mod evaluate;
+mod field;
 pub mod fit;
 pub mod gmm;
 pub mod lasa;
@@ -17,6 +18,7 @@ pub mod mat;
 #[cfg(test)]
 mod mat_writer;
 pub mod quality;
+mod refine;
 mod smoothing;
 
 pub use demonstration::{Demonstration, Demonstrations, Unit};
@@ -194,9 +196,10 @@ fn learn_in<const D: usize>(
     progress: &dyn Fn(f64),
 ) -> Result<Learnt, LearnError> {
     let all = samples::<D>(&demonstrations, usize::MAX);
-    let paths: Vec<_> = demonstrations.items().iter().map(|d| (fixed::<D>(&d.x), d.duration())).collect();
+    let paths = recordings::<D>(&demonstrations);
     let scale = Scale::of(&demonstrations, &all);
-    let normal = scale.normalise(&samples(&demonstrations, FIT_SAMPLES));
+    let normal = scale.normalise(&samples(&demonstrations, tune("SAMPLES", 1400.0) as usize));
+    let tracks = tracks(&paths, &scale);
 
     let candidates = match options.components {
         Some(k) => k..=k,
@@ -209,7 +212,7 @@ fn learn_in<const D: usize>(
     for (i, k) in candidates.enumerate() {
         progress(i as f64 / count);
         let Some(mixture) = gmm::fit(&normal, k, options.direction_weight, options.seed) else { continue };
-        let model = match model_of(&normal, &mixture, &scale, options) {
+        let model = match model_of(&normal, &mixture, &tracks, &scale, options) {
             Ok(model) => model,
             Err(reason) => {
                 failure = reason;
@@ -217,7 +220,7 @@ fn learn_in<const D: usize>(
             }
         };
         let Some(motion) = motion_of::<D>(&model) else { continue };
-        let quality = quality::measure(&motion, &all, &paths, demonstrations.extent());
+        let quality = quality::measure(&motion, &paths, demonstrations.extent());
         tried.push((mixture.len(), quality));
         let score = score(&quality, mixture.len(), demonstrations.extent(), scale.speed);
         if best.as_ref().is_none_or(|b| score < b.0) {
@@ -243,12 +246,27 @@ fn score(quality: &Quality, components: usize, extent: f64, speed: f64) -> f64 {
 fn model_of<const D: usize>(
     normal: &Samples<D>,
     mixture: &Mixture<D>,
+    tracks: &[refine::Track<D>],
     scale: &Scale<D>,
     options: &Options,
 ) -> Result<ModelFile, String> {
     let sigma = options.sigma * scale.length / scale.speed;
     let mut strictness = sigma;
+    let t0 = cpu();
     let mut fit = fit::fit(normal, mixture, sigma)?;
+    let t1 = cpu();
+    let field = field::Field::new(mixture, &fit.p, &fit.a, sigma).ok_or("field")?;
+    let mut task = refine::Task { x: &normal.x, v: &normal.v, tracks, weights: refine::Weights {
+        direction: tune("DIR", 0.1), slow: tune("SLOW", 0.2), path: 0.0, pace: tune("PACE", 0.1), anchor: 0.0 } };
+    let (field, c1) = if D == 2 { refine::refine::<D, 10>(field, &task, tune("R1", 30.0) as usize) } else { refine::refine::<D, 19>(field, &task, 30) };
+    let t2 = cpu();
+    task.weights.path = tune("PATH", 100.0);
+    let (field, c2) = if D == 2 { refine::refine::<D, 10>(field, &task, tune("R2", 20.0) as usize) } else { refine::refine::<D, 19>(field, &task, 20) };
+    let t3 = cpu();
+    if tune("VERBOSE", 0.0) > 0.0 { eprintln!("init {:.4} ({:.4}) refine {:.4} ({:.4}) roll {:.4} ({:.4})", fit.error, t1 - t0, c1, t2 - t1, c2, t3 - t2); }
+    let mixture = &field.mixture().ok_or("mixture")?;
+    fit = fit::Stable { p: field.p, a: field.parts.iter().map(|c| c.a).collect(), error: c2 };
+    fit::repair(&mut fit, sigma).ok_or("the inequality cannot be met")?;
     for _ in 0..6 {
         let model = denormalise(&fit, mixture, scale, options);
         if model.certified::<f32>() && model.certified::<f64>() {
@@ -259,6 +277,27 @@ fn model_of<const D: usize>(
         fit::repair(&mut fit, strictness).ok_or("the inequality cannot be met")?;
     }
     Err("the certificate does not survive rounding to f32".into())
+}
+
+fn cpu() -> f64 { std::fs::read_to_string("/proc/thread-self/schedstat").ok().and_then(|s| s.split(' ').next().and_then(|n| n.parse::<f64>().ok())).unwrap_or(0.0) * 1e-9 }
+fn tune(name: &str, default: f64) -> f64 {
+    std::env::var(format!("T_{name}")).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
+}
+
+fn recordings<const D: usize>(demonstrations: &Demonstrations) -> Vec<quality::Recording<D>> {
+    let one = |d: &Demonstration| quality::Recording { t: d.t.clone(), x: fixed(&d.x), v: fixed(&d.v) };
+    demonstrations.items().iter().map(one).collect()
+}
+
+fn tracks<const D: usize>(recordings: &[quality::Recording<D>], scale: &Scale<D>) -> Vec<refine::Track<D>> {
+    recordings
+        .iter()
+        .map(|r| {
+            let x: Vec<_> = r.x[r.start()..].iter().map(|x| (x - scale.attractor) / scale.length).collect();
+            let stride = x.len().div_ceil(200).max(1);
+            refine::Track { x: x.into_iter().step_by(stride).collect(), duration: r.duration() * scale.speed / scale.length }
+        })
+        .collect()
 }
 
 fn denormalise<const D: usize>(
@@ -318,9 +357,8 @@ pub fn motion_of<const D: usize>(model: &ModelFile) -> Option<Motion<D>> {
 /// How well any model follows any demonstrations; `None` where their dimensions differ.
 pub fn evaluate(model: &ModelFile, demonstrations: &Demonstrations) -> Option<Quality> {
     fn inside<const D: usize>(model: &ModelFile, demonstrations: &Demonstrations) -> Option<Quality> {
-        let paths: Vec<_> = demonstrations.items().iter().map(|d| (fixed::<D>(&d.x), d.duration())).collect();
-        let all = samples(demonstrations, usize::MAX);
-        Some(quality::measure(&motion_of::<D>(model)?, &all, &paths, demonstrations.extent()))
+        let paths = recordings::<D>(demonstrations);
+        Some(quality::measure(&motion_of::<D>(model)?, &paths, demonstrations.extent()))
     }
     match (model.dimension, demonstrations.dimension()) {
         (2, 2) => inside::<2>(model, demonstrations),
