@@ -73,6 +73,24 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             learnt.model.component.len(), q.rmse * 1e3, q.e_dot, q.dtwd * 1e3, q.pace, o[0], o[1], o[2],
             if ok { "" } else { "NOT CERTIFIED " }, if q.converged == q.rollouts { "" } else { "STRANDED" },
         );
+        if std::env::var("T_DECILES").is_ok() {
+            let motion = learn::motion_of::<2>(&learnt.model).ok_or("planar")?;
+            let mut sums = [0.0; 10];
+            let (mut first, mut last) = (0.0, 0.0);
+            for d in learnt.demonstrations.items() {
+                for (i, (x, v)) in d.x.iter().zip(&d.v).enumerate().step_by(5) {
+                    let f = motion.velocity(&nalgebra::Vector2::new(x[0], x[1]));
+                    let v = nalgebra::Vector2::new(v[0], v[1]);
+                    if f.norm() * v.norm() > 0.0 {
+                        let e = 1.0 - f.dot(&v) / (f.norm() * v.norm());
+                        sums[i * 10 / d.x.len()] += e / 1400.0;
+                        if i < 20 { first += e / 1400.0; }
+                        if i + 20 >= d.x.len() { last += e / 1400.0; }
+                    }
+                }
+            }
+            println!("      {sums:.4?} first 2% {first:.4} last 2% {last:.4}");
+        }
         table.push([learnt.model.component.len() as f64, q.rmse * 1e3, q.e_dot, q.dtwd * 1e3, q.pace, seconds, o[0], o[1], o[2]]);
     }
     let m: Vec<f64> = (0..9).map(|i| median(table.iter().map(|r| r[i]).collect())).collect();

@@ -47,11 +47,12 @@ fn features<const D: usize>(mixture: &Mixture<D>, x: &nalgebra::SVector<f64, D>)
 
 impl<const D: usize> Gram<D> {
     /// Statistics of all samples.
-    pub fn new(samples: &Samples<D>, mixture: &Mixture<D>) -> Self {
+    pub fn new(samples: &Samples<D>, mixture: &Mixture<D>, weight: impl Fn(&nalgebra::SVector<f64, D>) -> f64) -> Self {
         let size = mixture.len() * D;
         let (mut g, mut y, mut vv) = (DMatrix::zeros(size, size), DMatrix::zeros(size, D), 0.0);
-        let share = 1.0 / samples.x.len().max(1) as f64;
+        let n = 1.0 / samples.x.len().max(1) as f64;
         for (x, v) in samples.x.iter().zip(&samples.v) {
+            let share = n * weight(v);
             let phi = features(mixture, x);
             g.ger(share, &phi, &phi, 1.0);
             for c in 0..D {
@@ -179,7 +180,7 @@ pub fn condition<const D: usize>(p: &SMatrix<f64, D, D>) -> f64 {
 
 /// Fits P and all A_k.
 pub fn fit<const D: usize>(samples: &Samples<D>, mixture: &Mixture<D>, sigma: f64) -> Result<Stable<D>, String> {
-    let gram = Gram::new(samples, mixture);
+    let gram = Gram::new(samples, mixture, |_| 1.0);
     let mut best = if D == 2 { plane(&gram, sigma)? } else { space(&gram, samples, mixture, sigma)? };
     repair(&mut best, sigma).ok_or("the inequality cannot be met")?;
     best.error = gram.error(&best.a);

@@ -18,6 +18,7 @@ pub mod mat;
 #[cfg(test)]
 mod mat_writer;
 pub mod quality;
+mod reference;
 mod refine;
 mod smoothing;
 
@@ -198,7 +199,7 @@ fn learn_in<const D: usize>(
     let all = samples::<D>(&demonstrations, usize::MAX);
     let paths = recordings::<D>(&demonstrations);
     let scale = Scale::of(&demonstrations, &all);
-    let normal = scale.normalise(&samples(&demonstrations, tune("SAMPLES", 1400.0) as usize));
+    let normal = scale.normalise(&samples(&demonstrations, 300));
     let tracks = tracks(&paths, &scale);
 
     let candidates = match options.components {
@@ -246,24 +247,88 @@ fn score(quality: &Quality, components: usize, extent: f64, speed: f64) -> f64 {
 fn model_of<const D: usize>(
     normal: &Samples<D>,
     mixture: &Mixture<D>,
-    tracks: &[refine::Track<D>],
+    tracks: &[reference::Track<D>],
     scale: &Scale<D>,
     options: &Options,
 ) -> Result<ModelFile, String> {
-    let sigma = options.sigma * scale.length / scale.speed;
+    let sigma = tune("SIGMA", options.sigma) * scale.length / scale.speed;
     let mut strictness = sigma;
     let t0 = cpu();
-    let mut fit = fit::fit(normal, mixture, sigma)?;
+    let _ = mixture;
+    let mut p = reference::search(tracks, sigma);
     let t1 = cpu();
-    let field = field::Field::new(mixture, &fit.p, &fit.a, sigma).ok_or("field")?;
-    let mut task = refine::Task { x: &normal.x, v: &normal.v, tracks, weights: refine::Weights {
-        direction: tune("DIR", 0.1), slow: tune("SLOW", 0.2), path: 0.0, pace: tune("PACE", 0.1), anchor: 0.0 } };
-    let (field, c1) = if D == 2 { refine::refine::<D, 10>(field, &task, tune("R1", 30.0) as usize) } else { refine::refine::<D, 19>(field, &task, 30) };
-    let t2 = cpu();
-    task.weights.path = tune("PATH", 100.0);
-    let (field, c2) = if D == 2 { refine::refine::<D, 10>(field, &task, tune("R2", 20.0) as usize) } else { refine::refine::<D, 19>(field, &task, 20) };
-    let t3 = cpu();
-    if tune("VERBOSE", 0.0) > 0.0 { eprintln!("init {:.4} ({:.4}) refine {:.4} ({:.4}) roll {:.4} ({:.4})", fit.error, t1 - t0, c1, t2 - t1, c2, t3 - t2); }
+    let margin = tune("MARGINS", 1.3);
+    let (tune_dir, tune_slow) = (tune("DIR", 0.1), tune("SLOW", 0.2).powi(2));
+    let mut best: Option<(field::Field<D>, f64)> = None;
+    let mut log = String::new();
+    for start in 0..tune("STARTS", 2.0) as u64 {
+        let moved: Vec<_> = tracks.iter().map(|t| reference::follow(t, &p, sigma * margin)).collect();
+        let (mut x, mut v) = (vec![], vec![]);
+        let mut label = vec![];
+        let kk = tune("K", mixture.len() as f64);
+        for (track, (m, away)) in tracks.iter().zip(&moved) {
+            let n = track.x.len();
+            let mut cumulative = vec![0.0];
+            let step = |i: usize| (m.x[i] - m.x[i - 1]).norm();
+            let turn = |i: usize| { let (a, b) = (m.v[i], m.v[i - 1]); let s = a.norm() * b.norm(); if s > 0.0 { (a.dot(&b) / s).clamp(-1.0, 1.0).acos() } else { 0.0 } };
+            let length: f64 = (1..n).map(step).sum();
+            let turns: f64 = (1..n).map(turn).sum::<f64>() + 0.3;
+            for i in 1..n {
+                cumulative.push(cumulative[i - 1] + tune("SEGL", 1.0) * step(i) / length + tune("SEGA", 1.0) * turn(i) / turns + tune("SEGT", 1.0) / n as f64);
+            }
+            let total = cumulative[n - 1];
+            for i in 0..track.x.len() {
+                let l = ((cumulative[i] / total * kk) as usize).min(kk as usize - 1);
+                label.push(l);
+                if away[i] > 3e-3 { label.push(l); }
+                x.push(track.x[i]);
+                v.push(reference::admissible(&track.x[i], &track.v[i], &p, sigma * margin));
+                if away[i] > 3e-3 {
+                    x.push(m.x[i]);
+                    v.push(m.v[i]);
+                }
+            }
+        }
+        let targets = Samples { x, v };
+        let thin = Samples { x: targets.x.iter().copied().step_by(4).collect(), v: targets.v.iter().copied().step_by(4).collect() };
+        let t2 = cpu();
+        let segments = tune("SEG", 2.0) > 1.5 && start % 2 == 1 || tune("SEG", 2.0) == 1.0;
+        let Some(mixture) = (if segments { gmm::labelled(&targets.x, &label, kk as usize) } else { gmm::fit(&thin, tune("K", mixture.len() as f64) as usize, tune("CDIR", options.direction_weight), options.seed + start) }) else { continue };
+        let t3 = cpu();
+        let Ok(fit) = fit::Gram::new(&targets, &mixture, |v| 1.0 + tune_dir / (v.norm_squared() + tune_slow)).solve_for(&p, sigma, 2) else { continue };
+        let t4 = cpu();
+        let Some(field) = field::Field::new(&mixture, &fit.p, &fit.a, sigma) else { continue };
+        let followed: Vec<_> = moved.iter().map(|m| &m.0).map(as_path).collect();
+        let shown: Vec<_> = tracks.iter().map(as_path).collect();
+        let weights = refine::Weights { direction: tune("DIR", 0.1), slow: tune("SLOW", 0.2), path: 0.0, pace: tune("PACE", 0.1), anchor: 0.0, snap: tune("SNAP", 8.0), window: tune("WINDOW", 0.1), leash: tune("LEASH", 0.06) };
+        let mut task = refine::Task { x: &targets.x, v: &targets.v, tracks: &followed, weights };
+        let run = |field, task: &refine::Task<D>, rounds: f64| if D == 2 { refine::refine::<D, 10>(field, task, rounds as usize) } else { refine::refine::<D, 19>(field, task, rounds as usize) };
+        let (field, c1) = run(field, &task, tune("R1", 20.0));
+        let t5 = cpu();
+        task.weights.path = tune("PATH", 100.0);
+        let (field, c2) = run(field, &task, tune("R2", 15.0));
+        let t6 = cpu();
+        let mut last = refine::Task { tracks: if tune("TRUE", 0.0) > 0.0 { &shown } else { &followed }, ..task };
+        last.weights.leash = tune("LEASH3", 0.2);
+        last.weights.path = tune("PATH3", 100.0);
+        let (field, c3) = run(field, &last, tune("R3", 10.0));
+        let t7 = cpu();
+        log += &format!("start: P {:.4} cluster {:.4} socp {:.4} ({:.4}) refine {c1:.4} ({:.4}) roll {c2:.4} ({:.4}) true {c3:.4} ({:.4})\n", t1 - t0, t3 - t2, fit.error, t4 - t3, t5 - t4, t6 - t5, t7 - t6);
+        p = p * 1.0;
+        let Some(mixture) = field.mixture() else { continue };
+        let motion = Motion { attractor: SVector::zeros(), mixture, a: field.parts.iter().map(|c| c.a).collect() };
+        let recs: Vec<_> = tracks.iter().map(|t| quality::Recording { t: t.t.clone(), x: t.x.clone(), v: t.v.clone() }).collect();
+        let q = quality::measure(&motion, &recs, 1.0);
+        let c4 = q.dtwd / 200.0 / 0.02 + q.rmse / 0.14 + q.e_dot / 0.034 + 100.0 * (q.rollouts - q.converged) as f64;
+        let refs: f64 = tracks.iter().zip(&moved).map(|(t, m)| quality::warping_distance(&quality::resample(&t.x), &quality::resample(&m.0.x)).0).sum::<f64>() / tracks.len() as f64;
+        let recs: Vec<_> = moved.iter().map(|t| quality::Recording { t: t.0.t.clone(), x: t.0.x.clone(), v: t.0.v.clone() }).collect();
+        log += &format!("   refs are {:.0} from shown, rollouts {:.0} from refs", refs * scale.length * 1e3, quality::measure(&motion, &recs, 1.0).dtwd * scale.length * 1e3);
+        log += &format!("   score {c4:.2} dtwd {:.0} time {:.4}\n", q.dtwd * scale.length * 1e3, cpu() - t7);
+        if best.as_ref().is_none_or(|b| c4 < b.1) { best = Some((field, c4)); }
+    }
+    if tune("VERBOSE", 0.0) > 0.0 { eprint!("{log}"); }
+    let (field, c2) = best.ok_or("no start")?;
+    let mut fit;
     let mixture = &field.mixture().ok_or("mixture")?;
     fit = fit::Stable { p: field.p, a: field.parts.iter().map(|c| c.a).collect(), error: c2 };
     fit::repair(&mut fit, sigma).ok_or("the inequality cannot be met")?;
@@ -289,15 +354,22 @@ fn recordings<const D: usize>(demonstrations: &Demonstrations) -> Vec<quality::R
     demonstrations.items().iter().map(one).collect()
 }
 
-fn tracks<const D: usize>(recordings: &[quality::Recording<D>], scale: &Scale<D>) -> Vec<refine::Track<D>> {
+fn tracks<const D: usize>(recordings: &[quality::Recording<D>], scale: &Scale<D>) -> Vec<reference::Track<D>> {
     recordings
         .iter()
         .map(|r| {
-            let x: Vec<_> = r.x[r.start()..].iter().map(|x| (x - scale.attractor) / scale.length).collect();
-            let stride = x.len().div_ceil(200).max(1);
-            refine::Track { x: x.into_iter().step_by(stride).collect(), duration: r.duration() * scale.speed / scale.length }
+            let stride = r.x.len().div_ceil(tune("SAMPLES", 200.0) as usize).max(1);
+            let x = r.x.iter().map(|x| (x - scale.attractor) / scale.length).step_by(stride).collect();
+            let v = r.v.iter().map(|v| v / scale.speed).step_by(stride).collect();
+            let t = r.t.iter().map(|t| (t - r.t[0]) * scale.speed / scale.length).step_by(stride).collect();
+            reference::Track { x, v, t }
         })
         .collect()
+}
+
+fn as_path<const D: usize>(t: &reference::Track<D>) -> refine::Track<D> {
+    let first = t.x.len() / 50;
+    refine::Track { x: t.x[first..].to_vec(), duration: t.t[t.t.len() - 1] - t.t[first] }
 }
 
 fn denormalise<const D: usize>(

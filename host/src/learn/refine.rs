@@ -29,6 +29,12 @@ pub struct Weights {
     pub path: f64,
     /// Of being ahead or behind on the path, against being beside it.
     pub pace: f64,
+    /// A rollout farther from its path than this goes on from the path.
+    pub leash: f64,
+    /// How often such an error counts.
+    pub snap: f64,
+    /// Part of the path that a rollout may be ahead or behind.
+    pub window: f64,
     /// Of keeping the parameters where they started.
     pub anchor: f64,
 }
@@ -148,7 +154,6 @@ impl<const D: usize> Task<'_, D> {
             let mut x = track.x[0];
             s.fill([0.0; D]);
             let dt = track.duration / STEPS as f64;
-            let mut nearest = 0;
             for step in 1..=STEPS {
                 let local = field.at(&x);
                 let k1 = local.f;
@@ -189,17 +194,19 @@ impl<const D: usize> Task<'_, D> {
                 if step % EVERY != 0 {
                     continue;
                 }
-                let (point, tangent, index) = nearest_on(&track.x, &x, nearest, step as f64 / STEPS as f64);
-                nearest = index;
+                let (point, tangent, inside) = nearest_on(&track.x, &x, step as f64 / STEPS as f64, self.weights.window);
                 let timed = timed(&track.x, step as f64 / STEPS as f64);
                 let e = x - point;
-                // Beside the path in full, along it by the share of the pace.
+                // Beside the path in full, along it by the share of the pace; too far ahead or behind counts in full as well.
                 let pace = self.weights.pace;
-                let late = tangent * tangent.dot(&(x - timed));
-                let beside = SMatrix::<f64, D, D>::identity() - tangent * tangent.transpose();
+                let along = if inside { tangent * tangent.transpose() } else { SMatrix::zeros() };
+                let beside = SMatrix::<f64, D, D>::identity() - along;
+                let lost = e.norm() > self.weights.leash;
+                let w = if lost { w * self.weights.snap } else { w };
+                let late = along * (x - timed);
                 cost += w * ((beside * e).norm_squared() + pace * late.norm_squared());
                 if let Some(normal) = normal.as_deref_mut() {
-                    let metric = beside + tangent * tangent.transpose() * pace;
+                    let metric = beside + along * pace;
                     let residual = beside * e + late * pace;
                     for i in 0..n {
                         let c = metric * SVector::<f64, D>::from(s[i]) * w;
@@ -211,6 +218,11 @@ impl<const D: usize> Task<'_, D> {
                             }
                         }
                     }
+                }
+                if lost {
+                    // Lost: what follows would tell nothing. Go on from the path.
+                    x = point;
+                    s.fill([0.0; D]);
                 }
             }
         }
@@ -226,28 +238,33 @@ impl<const D: usize> Task<'_, D> {
     }
 }
 
-/// The nearest point of a path not far from index `from`, its tangent there, and its index.
+/// The nearest point of a path within a window about a part of it, the tangent there, and whether it is inside the window.
 fn nearest_on<const D: usize>(
     path: &[SVector<f64, D>],
     x: &SVector<f64, D>,
-    from: usize,
-    _time: f64,
-) -> (SVector<f64, D>, SVector<f64, D>, usize) {
-    let window = path.len() / 8 + 2;
-    let (low, high) = (from.saturating_sub(2), (from + window).min(path.len()));
+    time: f64,
+    window: f64,
+) -> (SVector<f64, D>, SVector<f64, D>, bool) {
+    let last = path.len() - 1;
+    let low = ((time - window).max(0.0) * last as f64) as usize;
+    let high = (((time + window).min(1.0) * last as f64) as usize).min(last);
     let mut best = (f64::INFINITY, low);
-    for (i, p) in path.iter().enumerate().take(high).skip(low) {
+    for (i, p) in path.iter().enumerate().take(high + 1).skip(low) {
         let d = (p - x).norm_squared();
         if d < best.0 {
             best = (d, i);
         }
     }
     let i = best.1;
-    let (a, b) = (i.saturating_sub(1), (i + 1).min(path.len() - 1));
+    let (a, b) = (i.saturating_sub(1), (i + 1).min(last));
     let tangent = (path[b] - path[a]).try_normalize(1e-9).unwrap_or_else(SVector::zeros);
-    let along = tangent.dot(&(x - path[i]));
+    let inside = i > low && i < high;
+    if !inside {
+        return (path[i], tangent, false);
+    }
     let limit = (path[b] - path[a]).norm() * 0.5;
-    (path[i] + tangent * along.clamp(-limit, limit), tangent, i)
+    let along = tangent.dot(&(x - path[i]));
+    (path[i] + tangent * along.clamp(-limit, limit), tangent, true)
 }
 
 fn timed<const D: usize>(path: &[SVector<f64, D>], part: f64) -> SVector<f64, D> {
