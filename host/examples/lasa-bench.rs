@@ -48,7 +48,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     files.retain(|p| p.extension().is_some_and(|e| e == "mat"));
     files.sort();
     let mut table: Vec<[f64; 9]> = vec![];
-    println!("{:20} {:>3} {:>7} {:>7} {:>7} {:>6} {:>6} | other DTWD", "motion", "K", "rmse", "e_dot", "dtwd", "pace", "cpu s");
+    println!(
+        "{:20} {:>3} {:>7} {:>7} {:>7} {:>6} {:>6} | other DTWD",
+        "motion", "K", "rmse", "e_dot", "dtwd", "pace", "cpu s"
+    );
     for file in files {
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         if only.as_ref().is_some_and(|o| !name.contains(o.as_str())) {
@@ -70,8 +73,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let ok = learnt.model.certified::<f32>() && learnt.model.certified::<f64>();
         println!(
             "{name:20} {:3} {:7.3} {:7.4} {:7.1} {:6.2} {seconds:6.3} | {:6.0} {:6.0} {:6.0} {}{}",
-            learnt.model.component.len(), q.rmse * 1e3, q.e_dot, q.dtwd * 1e3, q.pace, o[0], o[1], o[2],
-            if ok { "" } else { "NOT CERTIFIED " }, if q.converged == q.rollouts { "" } else { "STRANDED" },
+            learnt.model.component.len(),
+            q.rmse * 1e3,
+            q.e_dot,
+            q.dtwd * 1e3,
+            q.pace,
+            o[0],
+            o[1],
+            o[2],
+            if ok { "" } else { "NOT CERTIFIED " },
+            if q.converged == q.rollouts { "" } else { "STRANDED" },
         );
         if std::env::var("T_DECILES").is_ok() {
             let motion = learn::motion_of::<2>(&learnt.model).ok_or("planar")?;
@@ -84,19 +95,42 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     if f.norm() * v.norm() > 0.0 {
                         let e = 1.0 - f.dot(&v) / (f.norm() * v.norm());
                         sums[i * 10 / d.x.len()] += e / 1400.0;
-                        if i < 20 { first += e / 1400.0; }
-                        if i + 20 >= d.x.len() { last += e / 1400.0; }
+                        if i < 20 {
+                            first += e / 1400.0;
+                        }
+                        if i + 20 >= d.x.len() {
+                            last += e / 1400.0;
+                        }
                     }
                 }
             }
             println!("      {sums:.4?} first 2% {first:.4} last 2% {last:.4}");
         }
-        table.push([learnt.model.component.len() as f64, q.rmse * 1e3, q.e_dot, q.dtwd * 1e3, q.pace, seconds, o[0], o[1], o[2]]);
+        table.push([
+            learnt.model.component.len() as f64,
+            q.rmse * 1e3,
+            q.e_dot,
+            q.dtwd * 1e3,
+            q.pace,
+            seconds,
+            o[0],
+            o[1],
+            o[2],
+        ]);
     }
     let m: Vec<f64> = (0..9).map(|i| median(table.iter().map(|r| r[i]).collect())).collect();
     println!(
         "{:20} {:3} {:7.3} {:7.4} {:7.1} {:6.2} {:6.3} | {:6.0} {:6.0} {:6.0} worst dtwd {:.0}",
-        "median", m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8],
+        "median",
+        m[0],
+        m[1],
+        m[2],
+        m[3],
+        m[4],
+        m[5],
+        m[6],
+        m[7],
+        m[8],
         table.iter().map(|r| r[3]).fold(0.0, f64::max)
     );
     Ok(())

@@ -63,12 +63,7 @@ pub const fn triangle(d: usize) -> usize {
 
 impl<const D: usize> Field<D> {
     /// From a mixture and matrices that meet the inequality, or nearly so.
-    pub fn new(
-        mixture: &Mixture<D>,
-        p: &SMatrix<f64, D, D>,
-        a: &[SMatrix<f64, D, D>],
-        sigma: f64,
-    ) -> Option<Self> {
+    pub fn new(mixture: &Mixture<D>, p: &SMatrix<f64, D, D>, a: &[SMatrix<f64, D, D>], sigma: f64) -> Option<Self> {
         let r = cholesky(p)?;
         let parts = mixture
             .components()
@@ -79,9 +74,9 @@ impl<const D: usize> Field<D> {
                 let fall = -(m + m.transpose()) * 0.5;
                 // On the edge of the inequality L loses rank, and with it its derivative: start a little inside.
                 let size = (p * a).norm();
-                let root = [0.01, 0.05, 0.2, 1.0].iter().find_map(|inside| {
-                    cholesky(&(fall + SMatrix::identity() * (inside * size)))
-                })?;
+                let root = [0.01, 0.05, 0.2, 1.0]
+                    .iter()
+                    .find_map(|inside| cholesky(&(fall + SMatrix::identity() * (inside * size))))?;
                 Some(Part {
                     log_weight: prior.ln() - 0.5 * log_det,
                     mean: *mean,

@@ -163,7 +163,7 @@ pub fn labelled<const D: usize>(x: &[SVector<f64, D>], label: &[usize], k: usize
         }
         let mean = mine().fold(SVector::zeros(), |s: SVector<f64, D>, x| s + x) / count as f64;
         let spread = mine().fold(SMatrix::<f64, D, D>::zeros(), |s, x| s + (x - mean) * (x - mean).transpose());
-        let covariance = spread / count as f64 + SMatrix::identity() * super::tune("FLOOR", 1e-4);
+        let covariance = spread / count as f64 + SMatrix::identity() * FLOOR;
         priors.push(count as f64 / x.len() as f64);
         means.push(mean);
         covariances.push((covariance + covariance.transpose()) * 0.5);

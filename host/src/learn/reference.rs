@@ -7,6 +7,7 @@
 
 use super::field::cholesky;
 use super::fit::{MAX_CONDITION, condition};
+use super::refine::Path;
 use nalgebra::{SMatrix, SVector};
 
 /// A demonstration in normalised units, thinned.
@@ -20,9 +21,23 @@ pub struct Track<const D: usize> {
     pub t: Vec<f64>,
 }
 
+impl<const D: usize> Track<D> {
+    /// The path from where rollouts begin.
+    pub fn from_start(&self) -> Path<D> {
+        let first = self.x.len() / 50;
+        Path { x: self.x[first..].to_vec(), duration: self.t[self.t.len() - 1] - self.t[first] }
+    }
+}
+
 /// Relative importance: a path error of one extent, a velocity error of the mean speed, a direction error.
-const PATH: f64 = 7.0;
+const PATH: f64 = 10.0;
 const DIRECTION: f64 = 4.0;
+/// Far is worse than in proportion.
+const FAR: f64 = 30.0;
+/// Weight of the samples where rollouts begin, against all others together.
+const PINNED: f64 = 100.0;
+/// Where a path is pressed flat it is followed at this part of the speed that was shown, or faster.
+const SLOWEST: f64 = 0.33;
 /// Distance from the attractor, in extents, below which ratios of V say nothing.
 const CLOSE: f64 = 1e-3;
 
@@ -71,7 +86,7 @@ impl Scratch {
             self.weight.push(reach * reach * (length + 1e-4) + 1e-12);
         }
         // Rollouts begin where the demonstration did: the first samples do not give way.
-        let pinned = super::tune("PIN", 100.0) * self.weight.iter().sum::<f64>();
+        let pinned = PINNED * self.weight.iter().sum::<f64>();
         for w in self.weight.iter_mut().take(n / 50 + 1) {
             *w = pinned;
         }
@@ -100,7 +115,8 @@ fn price<const D: usize>(tracks: &[Track<D>], p: &SMatrix<f64, D, D>, sigma: f64
             count += 1.0;
         }
     }
-    super::tune("WPATH", PATH) * away / f64::max(total, 1e-9) + (slower + super::tune("WDIR", DIRECTION) * turned) / f64::max(count, 1.0)
+    let away = away / f64::max(total, 1e-9);
+    PATH * away * (1.0 + FAR * away) + (slower + DIRECTION * turned) / f64::max(count, 1.0)
 }
 
 /// P of least price: from the identity and from a grid of stretched ones, by a pattern search.
@@ -195,8 +211,7 @@ pub fn follow<const D: usize>(track: &Track<D>, p: &SMatrix<f64, D, D>, sigma: f
         let away = (moved.x[i] - track.x[i]).norm();
         if away > 1e-3 && track.t[b] > track.t[a] {
             let v = (moved.x[b] - moved.x[a]) / (track.t[b] - track.t[a]);
-            // Where the path is pressed flat it hardly gets on: not slower than a third of what was shown.
-            let least = super::tune("LEAST", 0.33) * track.v[i].norm();
+            let least = SLOWEST * track.v[i].norm();
             let size = v.norm();
             moved.v[i] = if size > 1e-9 { v * (least.max(size) / size) } else { v };
         }
@@ -217,4 +232,3 @@ pub fn admissible<const D: usize>(
     let excess = px.dot(v) + sigma * x.dot(&px);
     if excess > 0.0 && size > 1e-18 { v - px * (excess / size) } else { *v }
 }
-

@@ -9,9 +9,9 @@ use nalgebra::{SMatrix, SVector};
 /// Components of less weight than this do not enter a sample's derivative.
 const FAINT: f64 = 1e-4;
 
-/// A demonstration in normalised units.
+/// A path to follow, in normalised units.
 #[derive(Debug, Clone)]
-pub struct Track<const D: usize> {
+pub struct Path<const D: usize> {
     /// Positions from the sample where rollouts start.
     pub x: Vec<SVector<f64, D>>,
     /// Seconds (normalised) between the first and the last.
@@ -35,8 +35,12 @@ pub struct Weights {
     pub snap: f64,
     /// Part of the path that a rollout may be ahead or behind.
     pub window: f64,
-    /// Of keeping the parameters where they started.
-    pub anchor: f64,
+}
+
+impl Default for Weights {
+    fn default() -> Self {
+        Self { direction: 1.5, slow: 0.03, path: 100.0, pace: 0.1, leash: 0.06, snap: 8.0, window: 0.1 }
+    }
 }
 
 /// Samples and tracks to follow.
@@ -46,7 +50,7 @@ pub struct Task<'a, const D: usize> {
     /// Velocities.
     pub v: &'a [SVector<f64, D>],
     /// Demonstrations to roll out along.
-    pub tracks: &'a [Track<D>],
+    pub tracks: &'a [Path<D>],
     /// Of the errors.
     pub weights: Weights,
 }
@@ -75,19 +79,31 @@ fn dimension<const D: usize, const B: usize>(field: &Field<D>) -> usize {
 }
 
 impl<const D: usize> Task<'_, D> {
-    fn sample_weight(&self, v: &SVector<f64, D>) -> f64 {
-        let w = &self.weights;
-        (1.0 + w.direction / (v.norm_squared() + w.slow * w.slow)) / self.x.len().max(1) as f64
+    /// Cost of f where v was shown, its gradient's half, and its metric: |f - v|^2 + direction |f/|f| - v/|v||^2, lengths bounded below.
+    #[inline]
+    fn compare(&self, f: &SVector<f64, D>, v: &SVector<f64, D>) -> (f64, SVector<f64, D>, SMatrix<f64, D, D>) {
+        let slow = self.weights.slow * self.weights.slow;
+        let size = 1.0 / (f.norm_squared() + slow).sqrt();
+        let heading = f * size;
+        let e = f - v;
+        let turn = heading - v / (v.norm_squared() + slow).sqrt();
+        let slope = (SMatrix::<f64, D, D>::identity() - heading * heading.transpose()) * size;
+        let direction = self.weights.direction;
+        (
+            e.norm_squared() + direction * turn.norm_squared(),
+            e + slope * turn * direction,
+            SMatrix::identity() + slope * slope * direction,
+        )
     }
 
     fn velocities<const B: usize>(&self, field: &Field<D>, normal: &mut Normal) {
         let (n, parts) = (normal.n, field.parts.len());
         let base = parts * B;
+        let w = 1.0 / self.x.len().max(1) as f64;
         for (x, v) in self.x.iter().zip(self.v) {
             let local = field.at(x);
-            let w = self.sample_weight(v);
-            let e = local.f - v;
-            normal.cost += w * e.norm_squared();
+            let (cost, e, metric) = self.compare(&local.f, v);
+            normal.cost += w * cost;
             let mut active = [0usize; super::gmm::MAX_COMPONENTS];
             let mut blocks = [[[0.0; B]; D]; super::gmm::MAX_COMPONENTS];
             let mut count = 0;
@@ -105,8 +121,10 @@ impl<const D: usize> Task<'_, D> {
                     let row = ka * B + i;
                     let mut c = [0.0; D];
                     for r in 0..D {
-                        c[r] = w * ja[r][i];
-                        normal.g[row] += c[r] * e[r];
+                        normal.g[row] += w * ja[r][i] * e[r];
+                        for s in 0..D {
+                            c[r] += w * metric[(r, s)] * ja[s][i];
+                        }
                     }
                     for b in a..count {
                         let at = row * n + active[b] * B;
@@ -131,8 +149,9 @@ impl<const D: usize> Task<'_, D> {
             for i in 0..triangle(D) {
                 for r in 0..D {
                     normal.g[base + i] += w * shared[r][i] * e[r];
+                    let c: f64 = (0..D).map(|s| w * metric[(r, s)] * shared[s][i]).sum();
                     for j in i..triangle(D) {
-                        normal.h[(base + i) * n + base + j] += w * shared[r][i] * shared[r][j];
+                        normal.h[(base + i) * n + base + j] += c * shared[r][j];
                     }
                 }
             }
@@ -194,7 +213,8 @@ impl<const D: usize> Task<'_, D> {
                 if step % EVERY != 0 {
                     continue;
                 }
-                let (point, tangent, inside) = nearest_on(&track.x, &x, step as f64 / STEPS as f64, self.weights.window);
+                let (point, tangent, inside) =
+                    nearest_on(&track.x, &x, step as f64 / STEPS as f64, self.weights.window);
                 let timed = timed(&track.x, step as f64 / STEPS as f64);
                 let e = x - point;
                 // Beside the path in full, along it by the share of the pace; too far ahead or behind counts in full as well.
@@ -232,9 +252,9 @@ impl<const D: usize> Task<'_, D> {
     fn cost<const B: usize>(&self, field: &Field<D>) -> f64 {
         let mut cost = 0.0;
         for (x, v) in self.x.iter().zip(self.v) {
-            cost += self.sample_weight(v) * (field.velocity(x) - v).norm_squared();
+            cost += self.compare(&field.velocity(x), v).0;
         }
-        cost + self.rollouts::<B>(field, None)
+        cost / self.x.len().max(1) as f64 + self.rollouts::<B>(field, None)
     }
 }
 
@@ -291,8 +311,7 @@ fn solve(normal: &Normal, damping: f64) -> Option<Vec<f64>> {
         let row = &mut rest[..n];
         for j in 0..i {
             let other = &above[j * n..j * n + j + 1];
-            let dot: f64 = dot(&row[..j], &other[..j]);
-            row[j] = (row[j] - dot) / other[j];
+            row[j] = (row[j] - dot(&row[..j], &other[..j])) / other[j];
         }
         let d = row[i] - dot(&row[..i], &row[..i]);
         if !(d > 0.0 && d.is_finite()) {
@@ -315,7 +334,7 @@ fn solve(normal: &Normal, damping: f64) -> Option<Vec<f64>> {
     Some(d)
 }
 
-/// In four strands, so that it runs four times as fast; the order is fixed, so the result is the same everywhere.
+/// In eight strands, which run side by side; their order is fixed, so the result is the same everywhere.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut s = [0.0; 8];
     let (ca, cb) = (a.chunks_exact(8), b.chunks_exact(8));
@@ -328,10 +347,11 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     rest + ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]))
 }
 
-/// Bounds that keep a field fit for the device: nothing narrower than `NARROW` of the extent, nothing so wide that it is no place.
+/// The least and the largest standard deviation, in extents.
 const NARROW: f64 = 0.01;
 const WIDE: f64 = 3.0;
 
+/// Is the field fit for a device: nothing too narrow, too wide, too far away or too fast, and P round enough?
 fn allowed<const D: usize>(field: &Field<D>) -> bool {
     let largest = field.parts.iter().map(|c| c.log_weight).fold(f64::NEG_INFINITY, f64::max);
     condition(&field.p) <= MAX_CONDITION
@@ -344,20 +364,17 @@ fn allowed<const D: usize>(field: &Field<D>) -> bool {
         })
 }
 
-/// Runs `rounds` steps at most; the field it ends with and its cost.
-pub fn refine<const D: usize, const B: usize>(start: Field<D>, task: &Task<D>, rounds: usize) -> (Field<D>, f64) {
+/// Runs `rounds` steps at most, each of which lowers the cost.
+pub fn refine<const D: usize, const B: usize>(start: Field<D>, task: &Task<D>, rounds: usize) -> Field<D> {
     let n = dimension::<D, B>(&start);
-    let anchor: Vec<f64> = vec![0.0; n];
-    let _ = anchor;
     let mut field = start;
     let mut damping = 1e-2;
-    let mut cost = f64::INFINITY;
     let mut round = 0;
     while round < rounds {
         let mut normal = Normal::new(n);
         task.velocities::<B>(&field, &mut normal);
         normal.cost += task.rollouts::<B>(&field, Some(&mut normal));
-        cost = normal.cost;
+        let cost = normal.cost;
         let mut accepted = false;
         while round < rounds {
             round += 1;
@@ -368,7 +385,6 @@ pub fn refine<const D: usize, const B: usize>(start: Field<D>, task: &Task<D>, r
                     if c < cost {
                         let gain = (cost - c) / cost;
                         field = next;
-                        cost = c;
                         damping = (damping * 0.3).max(1e-7);
                         accepted = gain > 1e-4;
                         break;
@@ -384,5 +400,5 @@ pub fn refine<const D: usize, const B: usize>(start: Field<D>, task: &Task<D>, r
             break;
         }
     }
-    (field, cost)
+    field
 }
