@@ -7,7 +7,9 @@ use serde_json::json;
 
 use super::{Finished, print_json, progress};
 use crate::error::Outcome;
-use crate::learn::{Options, Unit, learn};
+use crate::learn::{Learnt, Options, Unit, learn};
+use crate::model::Skill;
+use pliant_core::Scalar;
 
 /// Options of `pliant learn`.
 #[derive(Clone, Debug, clap::Args)]
@@ -21,7 +23,7 @@ pub struct Args {
     /// Unit of lengths in the files: mm, cm or m (.mat: cm, so that LASA handwriting is ten times its size; .csv: m).
     #[arg(long)]
     unit: Option<Unit>,
-    /// Number of components, 1 to 16 (chosen from 1 to 8 if not given).
+    /// Number of components, 1 to 16 (chosen if not given).
     #[arg(long, value_name = "K")]
     components: Option<usize>,
     /// Seed of all random choices.
@@ -30,6 +32,52 @@ pub struct Args {
     /// Guaranteed rate of convergence, 1/s.
     #[arg(long, default_value_t = Options::default().sigma)]
     sigma: f64,
+    /// Weight of being on time on the path against being on it, 0 to 10.
+    #[arg(long, default_value_t = Options::default().pace)]
+    pace: f64,
+}
+
+/// Part of the extent up to which a path error is small, or too large.
+const CLOSE: f64 = 0.02;
+const ROUGH: f64 = 0.05;
+/// A pace that far from the demonstrators' is worth a word.
+const OFF_PACE: f64 = 0.15;
+
+/// How good the skill is, and what to do if it is not: a sentence each.
+fn verdict(learnt: &Learnt) -> Vec<String> {
+    let (q, extent) = (&learnt.quality, learnt.demonstrations.extent());
+    let percent = |length: f64| format!("{:.1} % of its size", 100.0 * length / extent);
+    let mut says = vec![match q.path_error / extent {
+        error if error <= CLOSE => "it follows the demonstrations closely".into(),
+        error if error <= ROUGH => {
+            format!("it follows the demonstrations roughly, {} beside them", percent(q.path_error))
+        }
+        _ => format!("it strays from the demonstrations by {}", percent(q.path_error)),
+    }];
+    if q.converged < q.rollouts {
+        let stranded = q.rollouts - q.converged;
+        says.push(format!("{stranded} rollouts take longer than ten times their demonstration: raise --sigma"));
+    }
+    if learnt.gives_way > CLOSE * extent {
+        says.push(format!(
+            "the demonstrations move away from their goal on the way, by {} more than a certificate allows: demonstrate a more direct way, \
+             or two skills with a goal in between",
+            percent(learnt.gives_way)
+        ));
+    } else if q.path_error > ROUGH * extent {
+        says.push("look at the figure: do the demonstrations cross themselves, or show two different motions?".into());
+        if learnt.demonstrations.items().len() < 3 {
+            says.push("more demonstrations allow more components".into());
+        }
+    }
+    if (q.pace - 1.0).abs() > OFF_PACE {
+        let word = if q.pace > 1.0 { "longer" } else { "shorter" };
+        says.push(format!(
+            "it takes {:.2} times as long as the demonstrator, so {word}: raise --pace to keep time",
+            q.pace
+        ));
+    }
+    says
 }
 
 pub(super) fn main(args: &Args, json: bool) -> Finished {
@@ -43,6 +91,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         components: args.components,
         seed: args.seed,
         sigma: args.sigma,
+        pace: args.pace,
         ..Options::default()
     };
     let bar = progress::bar(json);
@@ -52,11 +101,15 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     let seconds = begin.elapsed().as_secs_f64();
     bar.finish_and_clear();
     learnt.model.write(&out)?;
+    let margin = match learnt.model.skill::<f32>()? {
+        Skill::Planar(ds) => ds.certificate().rate.to_f64(),
+        Skill::Spatial(ds) => ds.certificate().rate.to_f64(),
+    };
     let (k, q, demonstrations) = (learnt.model.component.len(), &learnt.quality, learnt.demonstrations.items().len());
     if json {
         print_json(&json!({
             "name": learnt.model.name, "model": out, "dimension": learnt.model.dimension, "k": k, "demonstrations": demonstrations,
-            "rmse_m_s": q.rmse, "e_dot": q.e_dot, "dtwd_m": q.dtwd, "path_error_m": q.path_error,
+            "rmse_m_s": q.rmse, "e_dot": q.e_dot, "dtwd_m": q.dtwd, "path_error_m": q.path_error, "pace": q.pace, "margin": margin, "verdict": verdict(&learnt),
             "converged": q.converged, "rollouts": q.rollouts, "certified": true, "seconds": seconds,
         }));
     } else {
@@ -70,7 +123,11 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
             q.e_dot,
             q.path_error * 1e3
         );
+        say!("  certified rate {margin:.3} 1/s, rounding included; {:.2} times the demonstrators' time", q.pace);
         say!("  {} of {} rollouts from the demonstrations' starts arrive", q.converged, q.rollouts);
+        for sentence in verdict(&learnt) {
+            say!("  {sentence}");
+        }
         say!("  model: {}", out.display());
     }
     Ok(Outcome::Success)

@@ -80,6 +80,9 @@ pub struct Learnt {
     pub model: ModelFile,
     /// How well it follows the demonstrations.
     pub quality: Quality,
+    /// How far the demonstrations had to give way so that V falls along them, m, the mean over samples: no skill with a certificate of this
+    /// kind follows them closer.
+    pub gives_way: f64,
     /// What it was learnt from, in metres and ending at the attractor.
     pub demonstrations: Demonstrations,
 }
@@ -250,7 +253,9 @@ fn learn_in<const D: usize>(
     model.learnt = Some(provenance(options, &demonstrations, &quality));
     model.validate()?;
     progress(1.0);
-    Ok(Learnt { model, quality, demonstrations })
+    let away: Vec<f64> = tracks.iter().flat_map(|t| reference::follow(t, &lesson.p, sigma).1).collect();
+    let gives_way = scale.length * away.iter().sum::<f64>() / away.len().max(1) as f64;
+    Ok(Learnt { model, quality, gives_way, demonstrations })
 }
 
 /// Rounds to f32 and checks the certificate on the rounded numbers.
