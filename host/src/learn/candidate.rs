@@ -114,7 +114,8 @@ impl<const D: usize> Lesson<'_, D> {
 }
 
 fn improve<const D: usize>(field: Field<D>, task: &Task<D>, rounds: usize) -> Field<D> {
-    if D == 2 { refine::<D, 10>(field, task, rounds) } else { refine::<D, 19>(field, task, rounds) }
+    // In space P has five shape parameters in place of two, and its first guess is farther off.
+    if D == 2 { refine::<D, 10>(field, task, rounds) } else { refine::<D, 19>(field, task, 4 * rounds) }
 }
 
 /// Errors in multiples of a good model's, and a rollout that does not arrive counts more than any error.

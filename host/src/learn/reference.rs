@@ -142,7 +142,7 @@ pub fn search<const D: usize>(tracks: &[Track<D>], sigma: f64) -> SMatrix<f64, D
         }
     }
     let mut step = 0.3;
-    while step > 0.02 {
+    while step > 0.003 {
         let mut better = false;
         for r in 0..D {
             for c in r..D {

@@ -386,7 +386,7 @@ pub fn refine<const D: usize, const B: usize>(start: Field<D>, task: &Task<D>, r
                         let gain = (cost - c) / cost;
                         field = next;
                         damping = (damping * 0.3).max(1e-7);
-                        accepted = gain > 1e-4;
+                        accepted = gain > if D == 2 { 1e-4 } else { 1e-6 };
                         break;
                     }
                 }
