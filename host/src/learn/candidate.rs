@@ -66,7 +66,9 @@ impl<const D: usize> Lesson<'_, D> {
             let segments = segments(reference, components);
             for (i, (x, v)) in track.x.iter().zip(&track.v).enumerate() {
                 targets.x.push(*x);
-                targets.v.push(admissible(x, v, &self.p, rate));
+                // In space the first guess of P is rougher, and what it forbids another P may allow.
+                let cut = D == 2 || away[i] > MOVED;
+                targets.v.push(if cut { admissible(x, v, &self.p, rate) } else { *v });
                 label.push(segments[i]);
                 if away[i] > MOVED {
                     targets.x.push(reference.x[i]);
@@ -88,8 +90,8 @@ impl<const D: usize> Lesson<'_, D> {
         let start = Gram::new(&targets, &mixture).solve_for(&self.p, self.sigma, 2).ok()?;
         let mut field = Field::new(&mixture, &start.p, &start.a, self.sigma)?;
 
-        let followed: Vec<_> = moved.into_iter().map(|m| m.0.from_start()).collect();
-        let shown: Vec<_> = self.shown.iter().map(Track::from_start).collect();
+        let followed: Vec<_> = moved.into_iter().map(|m| m.0.after_start()).collect();
+        let shown: Vec<_> = self.shown.iter().map(Track::after_start).collect();
         let weights = Weights { path: 0.0, pace: self.pace, ..Weights::default() };
         let mut task = Task { x: &targets.x, v: &targets.v, tracks: &followed, weights };
         field = improve(field, &task, ROUNDS[0]);

@@ -23,7 +23,7 @@ pub struct Track<const D: usize> {
 
 impl<const D: usize> Track<D> {
     /// The path from where rollouts begin.
-    pub fn from_start(&self) -> Path<D> {
+    pub fn after_start(&self) -> Path<D> {
         let first = self.x.len() / 50;
         Path { x: self.x[first..].to_vec(), duration: self.t[self.t.len() - 1] - self.t[first] }
     }

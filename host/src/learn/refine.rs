@@ -2,6 +2,8 @@
 //!
 //! What is minimised is the velocity error at the samples, in length and in direction, and how far rollouts stray from the demonstrations' paths.
 
+#![expect(clippy::needless_range_loop, reason = "one index runs through several matrices, as in the formulas")]
+
 use super::field::{Field, triangle};
 use super::fit::{MAX_CONDITION, condition};
 use nalgebra::{SMatrix, SVector};
