@@ -66,9 +66,7 @@ impl<const D: usize> Lesson<'_, D> {
             let segments = segments(reference, components);
             for (i, (x, v)) in track.x.iter().zip(&track.v).enumerate() {
                 targets.x.push(*x);
-                // In space the first guess of P is rougher, and what it forbids another P may allow.
-                let cut = D == 2 || away[i] > MOVED;
-                targets.v.push(if cut { admissible(x, v, &self.p, rate) } else { *v });
+                targets.v.push(admissible(x, v, &self.p, rate));
                 label.push(segments[i]);
                 if away[i] > MOVED {
                     targets.x.push(reference.x[i]);
