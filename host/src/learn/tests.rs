@@ -94,7 +94,7 @@ fn a_bent_motion_in_space_is_followed_and_certified() {
     let extent = demonstrations.extent();
     let options = Options { components: Some(5), ..Options::default() };
     let found = learnt(demonstrations, &options);
-    assert!(largest_eigenvalue(&found.model, 0.1) < 0.0);
+    assert!(largest_eigenvalue(&found.model, Options::default().sigma) < 0.0);
     assert_eq!(found.quality.converged, 7);
     assert!(found.quality.path_error < 0.05 * extent, "{:?}", found.quality);
     assert!(matches!(found.model.skill::<f32>(), Ok(crate::model::Skill::Spatial(_))));
@@ -124,7 +124,7 @@ fn an_unstable_motion_still_gets_a_stable_model() {
         .collect();
     let one = Demonstration::new("away", t, x, None).expect("valid");
     let found = learnt(Demonstrations::new(vec![one]).expect("one"), &Options::default());
-    assert!(largest_eigenvalue(&found.model, 0.1) < 0.0);
+    assert!(largest_eigenvalue(&found.model, Options::default().sigma) < 0.0);
     assert_eq!(found.quality.converged, 1);
 }
 
@@ -142,6 +142,33 @@ fn two_samples_are_enough() {
     let found = learn_from(Demonstrations::new(vec![one]).expect("one"), &Options::default(), &|_| ());
     let model = found.expect("learnable").model;
     assert!(model.certified::<f32>());
+}
+
+/// The numbers in the file, rounded to each scalar a device may run, keep the certificate: of a skill in the plane and of one in space.
+#[test]
+fn what_is_learnt_is_certified_in_every_precision() {
+    let a = Matrix2::new(-0.8, 3.0, -3.0, -0.8);
+    let planar = linear(a, &[Vector2::new(0.3, 0.4), Vector2::new(-0.4, 0.1)]);
+    for demonstrations in [planar, helix()] {
+        let model = learnt(demonstrations, &Options { components: Some(6), ..Options::default() }).model;
+        assert!(model.certified::<f32>() && model.certified::<f64>() && model.certified::<pliant_core::Fixed>());
+    }
+}
+
+/// Away from the attractor half of the way, which no V allows: the path gives way as little as it must, and no more.
+#[test]
+fn a_path_that_no_certificate_allows_is_followed_as_far_as_one_does() {
+    let n = 200;
+    let at =
+        |s: f64| DVector::from_vec(vec![0.2 * (1.0 - s) + 0.3 * (std::f64::consts::PI * s).sin(), 0.3 * (1.0 - s)]);
+    let t = (0..=n).map(|i| 3.0 * f64::from(i) / f64::from(n)).collect();
+    let x = (0..=n).map(|i| at(f64::from(i) / f64::from(n))).collect();
+    let one = Demonstration::new("out and back", t, x, None).expect("valid");
+    let all = Demonstrations::new(vec![one]).expect("one");
+    let extent = all.extent();
+    let found = learnt(all, &Options::default());
+    assert_eq!(found.quality.converged, 1);
+    assert!(found.quality.path_error < 0.05 * extent, "{:?}", found.quality);
 }
 
 #[test]
@@ -185,7 +212,7 @@ fn every_lasa_motion_is_learnt_and_certified() {
             continue;
         }
         let found = learn(std::slice::from_ref(&path), &Options::default(), &|_| ()).expect("learnable");
-        assert!(largest_eigenvalue(&found.model, 0.1) < 0.0, "{}", path.display());
+        assert!(largest_eigenvalue(&found.model, Options::default().sigma) < 0.0, "{}", path.display());
         assert!(found.model.certified::<f32>() && found.model.certified::<f64>(), "{}", path.display());
         assert_eq!(found.quality.converged, found.quality.rollouts, "{}", path.display());
         count += 1;
@@ -209,7 +236,7 @@ proptest! {
         let options = Options { components: Some(k), ..Options::default() };
         let found = learn_from(Demonstrations::new(vec![one]).expect("one"), &options, &|_| ());
         let model = found.expect("learnable").model;
-        prop_assert!(largest_eigenvalue(&model, 0.1) < 0.0);
+        prop_assert!(largest_eigenvalue(&model, Options::default().sigma) < 0.0);
         prop_assert!(model.certified::<f32>());
     }
 }
