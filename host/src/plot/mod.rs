@@ -10,7 +10,9 @@
 //! ```
 
 mod approach;
+pub mod chart;
 pub mod figure;
+mod gallery;
 mod ink;
 mod labels;
 mod legend;
@@ -27,11 +29,12 @@ mod view;
 use std::io;
 use std::path::Path;
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Point2, Vector2, Vector3};
 
 use crate::scene::{ConvertError, Scene};
 use figure::{Anchor, Axes, Svg};
 use panel::Panel;
+pub use gallery::{Tile, gallery};
 pub use streamlines::streamlines;
 pub use trajectory::{Trajectory, TrajectoryPoint, trajectories};
 use view::View;
@@ -47,12 +50,14 @@ pub struct Options {
     pub streamlines: bool,
     /// Colour trajectories by their speed?
     pub speed: bool,
+    /// A path to compare with, m; drawn under the trajectories.
+    pub reference: Vec<Vector3<f64>>,
 }
 
 impl Default for Options {
     /// At time 0, 560 pixels wide, with everything.
     fn default() -> Self {
-        Self { time: 0.0, width: 560.0, streamlines: true, speed: true }
+        Self { time: 0.0, width: 560.0, streamlines: true, speed: true, reference: Vec::new() }
     }
 }
 

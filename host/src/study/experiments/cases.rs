@@ -1,0 +1,121 @@
+//! The experiments A1 to D1: what the paper's Table I puts on the table, in metres, on the path of its S-shape.
+
+use nalgebra::Vector2;
+
+use crate::sim::Perception;
+use crate::study::column::{Column, THETA};
+use crate::study::skill::{Skill, Skills};
+use crate::study::world::{Body, World};
+
+/// Where A's cylinder is: at this share of the path, this far to its left, m.
+pub const A_PLACE: (f64, f64) = (0.45, 0.01);
+/// Where B's pair is: at this share of the path, cores this far apart, m, the cylinder to the left (1) or right (-1).
+pub const B_PLACE: (f64, f64, f64) = (0.45, 0.03, 1.0);
+/// How far apart B2's hard pair is moved, so that there is a way between, m.
+const B2_GAP: f64 = 0.03;
+/// What the perception of D1 is like: m, and ticks (ms).
+const NOISE: f64 = 0.002;
+const LATENCY: u64 = 15;
+/// The hard cylinder of A, B and D, m; soft to 1.5 times that.
+const CYLINDER: [f64; 2] = [0.04, 0.04];
+/// The hard elliptic cylinder of B, m.
+const ELLIPSE: [f64; 2] = [0.08, 0.04];
+/// ln k + 1 for k = e^0.5.
+const RATIO: f64 = 1.5;
+
+/// An experiment.
+#[derive(Clone, Debug)]
+pub struct Case<'a> {
+    /// As the paper calls it.
+    pub id: &'static str,
+    /// What is there.
+    pub world: World<'a>,
+    /// By the paper's method, or by the original one?
+    pub ours: bool,
+    /// How well what is there is seen.
+    pub perception: Perception,
+}
+
+impl Case<'_> {
+    /// The ways it is computed: one for the original method, two for the paper's.
+    pub fn columns(&self) -> &'static [Column] {
+        if self.ours { &[Column::Pliant, Column::Letter(THETA)] } else { &[Column::Original] }
+    }
+}
+
+/// A's cylinder at a share of a path, so far to its left, m.
+pub fn one(skill: &Skill, share: f64, left: f64) -> Vec<Body> {
+    let place = skill.place(share);
+    vec![Body::new("cylinder", CYLINDER, RATIO, place.at + place.left() * left, 0.0)]
+}
+
+/// B's cylinder and ellipse on both sides of a path, cores `gap` apart, m; the ellipse lies along the path.
+pub fn two(skill: &Skill, share: f64, gap: f64, side: f64) -> Vec<Body> {
+    let place = skill.place(share);
+    let out = place.left() * side;
+    let cylinder = Body::new("cylinder", CYLINDER, RATIO, place.at + out * (gap / 2.0 + CYLINDER[0]), 0.0);
+    let mut ellipse = Body::new("ellipse", ELLIPSE, RATIO, place.at, place.heading());
+    ellipse.center -= out * (gap / 2.0 + ellipse.reach(&out));
+    vec![cylinder, ellipse]
+}
+
+fn hardened(bodies: &[Body]) -> Vec<Body> {
+    bodies.iter().map(Body::hardened).collect()
+}
+
+/// C's five along the arch: a rigid cylinder, and two pairs whose layers overlap.
+fn five(skill: &Skill) -> Vec<Body> {
+    let beside = |name: &str, axes: [f64; 2], ratio: f64, share: f64, left: f64, turn: f64| {
+        let place = skill.place(share);
+        Body::new(name, axes, ratio, place.at + place.left() * left, place.heading() + turn)
+    };
+    vec![
+        beside("rigid cylinder", CYLINDER, 1.0, 0.5, -0.055, 0.0),
+        beside("soft slim ellipse", [0.05, 0.02], 2.5, 0.2, 0.04, 0.0),
+        beside("first padded ellipse", [0.08, 0.04], RATIO, 0.22, -0.065, 0.0),
+        beside("soft round ellipse", [0.06, 0.05], 2.0, 0.8, 0.075, 0.0),
+        beside("second padded ellipse", [0.10, 0.05], RATIO, 0.8, -0.075, 0.0),
+    ]
+}
+
+/// D's way: from the top of the S to its middle and its bottom, each time into the robot's way.
+fn moving(skill: &Skill) -> Vec<Body> {
+    let at = |share: f64, left: f64| {
+        let place = skill.place(share);
+        place.at + place.left() * left
+    };
+    let (top, middle, bottom) = (at(0.25, 0.02), at(0.5, 0.02), at(0.8, 0.02));
+    let row = |t: f64, p: Vector2<f64>| [t, p.x, p.y];
+    let path = vec![row(0.0, top), row(0.8, top), row(1.8, middle), row(2.2, middle), row(3.4, bottom)];
+    vec![Body { path, ..Body::new("cylinder", CYLINDER, RATIO, top, 0.0) }]
+}
+
+/// All of them; `seed` is of the noise in what D1 sees.
+pub fn cases(skills: &Skills, seed: u64) -> Vec<Case<'_>> {
+    let s = &skills.s;
+    let exact = Perception::default();
+    let case = |id, bodies, ours| Case { id, world: World::new(s, bodies), ours, perception: exact };
+    let a = one(s, A_PLACE.0, A_PLACE.1);
+    let b = two(s, B_PLACE.0, B_PLACE.1, B_PLACE.2);
+    let apart = {
+        // As hard as B4's, and moved from the path until the way between them is open.
+        let place = s.place(B_PLACE.0);
+        let mut all = hardened(&b);
+        for (body, side) in all.iter_mut().zip([B_PLACE.2, -B_PLACE.2]) {
+            let out = place.left() * side;
+            body.center = place.at + out * (B2_GAP / 2.0 + body.reach(&out));
+        }
+        all
+    };
+    vec![
+        case("A1", a.clone(), true),
+        case("A2", hardened(&a), false),
+        case("A3", a, false),
+        case("B1", b.clone(), true),
+        case("B2", apart, false),
+        case("B3", b.clone(), false),
+        case("B4", hardened(&b), false),
+        Case { id: "C1", world: World::new(&skills.recorded, five(&skills.recorded)), ours: true, perception: exact },
+        Case { id: "D1", world: World::new(s, moving(s)), ours: true, perception: Perception { noise: NOISE, latency: LATENCY, seed } },
+    ]
+}
