@@ -2,45 +2,36 @@
 use pliant::study::{column::*, drive::*, measure::*, skill::*, world::*};
 fn main() {
     let lasa = std::env::args().nth(1).map(std::path::PathBuf::from);
-    let t=std::time::Instant::now();
     let skills = Skills::new(lasa.as_deref(), &|_| {}).unwrap();
-    println!("learn {:?}", t.elapsed());
-    let s=&skills.s;
-    println!("start {:?} path {} mm k {}", s.start, s.path.len(), s.model.component.len());
-    for i in 0..=20 { let p=s.place(i as f64/20.0); println!("{:.2} at {:.3} {:.3} heading {:.2} speed", i as f64/20.0, p.at.x,p.at.y,p.heading()); }
-    let c: f64 = std::env::var("C").ok().and_then(|c|c.parse().ok()).unwrap_or(0.03);
-    let sc=|w:&World,name:&str,col:Column| pliant::scene::Scene::parse_with_model(name,&w.toml(col).replace("c = 0.03",&format!("c = {c:?}")),&w.skill.text);
+    let own = Skills::new(None, &|_| {}).unwrap();
     let d=Driving::of(Robot::Lagging);
-    let t=std::time::Instant::now();
-    for share in [0.15,0.2,0.25,0.3,0.35,0.4,0.45,0.5,0.55,0.6,0.65,0.7,0.75,0.8] {
-        print!("A {share:.2}: ");
-        for off in [-0.05,-0.04,-0.03,-0.02,-0.01,0.0,0.01,0.02,0.03,0.04,0.05] {
-            let p=s.place(share);
-            let w=World::new(s, vec![Body::new("cylinder",[0.04,0.04],1.5,p.at+p.left()*off,0.0)]);
-            let mut sp=vec![]; 
-            for c in [Column::Pliant, Column::Original] {
-                match sc(&w,"a",c) { Ok(sc)=>{ let r=drive(&sc,&s.start,&d,None).unwrap(); sp.push((mean_speed(&r,|s|s.layers==1).unwrap_or(f64::NAN), r.reached, r.min_gamma()));} Err(e)=>{ sp.push((f64::NAN,false,0.0)); if off==0.0 {print!("{e} ")} } }
-            }
-            print!("{:+.0}{} ", change_percent(sp[0].0,sp[1].0), if sp.iter().all(|x|x.1&&x.2>1.0) {""} else {"!"});
+    let go=|s:&Skill,c:f64,b:Vec<Body>,layers:u8| -> f64 {
+        let w=World::new(s,b); let mut sp=vec![];
+        for col in [Column::Pliant, Column::Original] {
+            match pliant::scene::Scene::parse_with_model("x",&w.toml(col).replace("c = 0.05",&format!("c = {c:?}")),&s.text) {
+                Ok(sc)=>{ let r=drive(&sc,&s.start,&d,None).unwrap(); if !r.reached||r.touched() {return f64::NAN} sp.push(mean_speed(&r,|s|s.layers==layers&&s.gamma>1.0).unwrap_or(f64::NAN)) }
+                Err(_)=>return f64::NAN } }
+        change_percent(sp[0],sp[1]) };
+    let _=go;
+    for (nm,sk) in [("lasa",&skills),("own",&own)] { 
+      let cs=pliant::study::experiments::cases::cases(sk,1);
+      for deg in (-18..18).map(|i| i*10) {
+        print!("{nm} theta {deg}: ");
+        for case in cs.iter().filter(|c| c.ours) {
+          let o=pliant::study::experiments::outcome::Outcome::of(case,Column::Letter((deg as f64).to_radians())).unwrap();
+          print!("{} {} {:.2}s g{:.3} soft {:.3} int {:.3} | ",case.id,o.drive.reached,o.drive.time(),o.drive.min_gamma(),o.soft_speed().unwrap_or(f64::NAN),o.intersection_speed().unwrap_or(f64::NAN));
         }
         println!();
-    }
-    println!("{:?}", t.elapsed());
-    // B: cylinder on one side, ellipse on the other, gap between cores
-    for i in 0..20 { let p=s.place(i as f64/20.0); let m=pliant_core::Motion::Lpv(s.model.certify::<f64,2>().unwrap()); print!("{:.2} ", m.velocity(&p.at).norm()); } println!();
-    for side in [1.0,-1.0] { for tilt in [0.0, 0.4, -0.4] { for gap in [0.015,0.02,0.025,0.03] {
-      print!("B side {side} tilt {tilt} gap {gap}: ");
-      for share in [0.25,0.3,0.35,0.4,0.45,0.5,0.55,0.6,0.65,0.7,0.75] {
-        let p=s.place(share); let n=p.left()*side;
-        let mut e=Body::new("ellipse",[0.08,0.04],1.5,p.at,p.heading()+tilt);
-        e.center = p.at - n*(gap/2.0+e.reach(&n));
-        let w=World::new(s, vec![Body::new("cylinder",[0.04,0.04],1.5,p.at+n*(gap/2.0+0.04),0.0), e]);
-        let mut sp=vec![];
-        for c in [Column::Pliant, Column::Original] {
-            match sc(&w,"b",c) { Ok(sc)=>{ let r=drive(&sc,&s.start,&d,None).unwrap(); sp.push((mean_speed(&r,|s|s.layers==2).unwrap_or(f64::NAN), r.reached, r.min_gamma()));} Err(_)=>sp.push((f64::NAN,false,0.0)) }
-        }
-        print!("{:+.0}{} ", change_percent(sp[0].0,sp[1].0), if sp.iter().all(|x|x.1&&x.2>1.0) {""} else {"!"});
       }
-      println!();
-    }}}
+    }
+}
+fn best(n:&str,c:f64,sh:&[f64],of:&[f64],g:&[Vec<(f64,f64)>],t:f64) {
+    let mut all=vec![];
+    for i in 1..sh.len()-1 { for j in 1..of.len()-1 {
+        let err=|p:(f64,f64)| { let e=(p.0-t).abs().max((p.1-t).abs()); if e.is_nan() {99.0} else {e} };
+        let e=err(g[i][j]); let mut m:f64=0.0; for a in 0..3 { for b in 0..3 { m=m.max(err(g[i+a-1][j+b-1])); } }
+        if e<3.0 { all.push((m,e,sh[i],of[j],g[i][j])); }
+    }}
+    all.sort_by(|a,b| a.0.total_cmp(&b.0));
+    for a in all.iter().take(6) { println!("c {c} {n} worst near {:.1} err {:.1} share {:.2} off {:.4} {:+.1}/{:+.1}",a.0,a.1,a.2,a.3,a.4.0,a.4.1); }
 }

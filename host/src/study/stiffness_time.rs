@@ -26,9 +26,9 @@ const BOX: f64 = 0.5 * UNIT;
 /// Hard semi-axes of the obstacle, m.
 pub const AXES: [f64; 2] = [0.06, 0.04];
 /// Where it is: at this share of the path, this far to its left, m.
-pub const PLACE: (f64, f64) = (0.45, 0.05);
-/// The radius of the target area, m.
-const TARGET: f64 = 0.03;
+pub const PLACE: (f64, f64) = (0.55, 0.01);
+/// The radius of the target area, m, and how far from the core's end its middle is.
+const TARGET: f64 = 0.05;
 
 /// The obstacle of both studies of time.
 pub fn obstacle(skill: &Skill, ratio: f64) -> Body {
@@ -36,17 +36,18 @@ pub fn obstacle(skill: &Skill, ratio: f64) -> Body {
     Body::new("ellipse", AXES, ratio, place.at + place.left() * PLACE.1, place.heading())
 }
 
-/// 25 places in a box beside the obstacle, before it; and the middle of the target area, behind it.
+/// 25 places in a box that begins where the layer of k = e^0.5 does, before the obstacle; and the middle of the target area, right behind it.
 fn places(skill: &Skill) -> (Vec<Vector2<f64>>, Vector2<f64>) {
     let place = skill.place(PLACE.0);
-    let middle = place.at - place.along * AXES[0] - place.left() * 0.005;
+    let center = obstacle(skill, 1.0).center;
+    let middle = center - place.along * (AXES[0] * 1.5 + BOX / 2.0);
     let step = BOX / (SIDE - 1) as f64;
     let at = |i: usize, j: usize| {
         let (a, b) = (i as f64 * step - BOX / 2.0, j as f64 * step - BOX / 2.0);
         middle + place.along * a + place.left() * b
     };
     let starts = (0..SIDE).flat_map(|i| (0..SIDE).map(move |j| at(i, j))).collect();
-    (starts, place.at + place.along * (AXES[0] + 0.02))
+    (starts, center + place.along * (AXES[0] + TARGET))
 }
 
 /// Times to the target area for one k, s; none for a start that never came there.

@@ -52,11 +52,11 @@ impl Runs {
 fn bodies(skill: &Skill, two: bool) -> Vec<Body> {
     const AXES: [f64; 2] = [0.05, 0.03];
     const RATIO: f64 = 1.6;
-    let place = skill.place(0.45);
+    let place = skill.place(0.5);
     let angle = place.heading() + 0.4;
     let mut first = Body::new("first", AXES, RATIO, place.at, angle);
     if !two {
-        first.center += place.left() * 0.015;
+        first.center += place.left() * 0.01;
         return vec![first];
     }
     let mut second = Body::new("second", AXES, RATIO, place.at, place.heading() - 0.4);

@@ -24,9 +24,9 @@ pub struct Spread {
 /// Shares of the path at which obstacles are put.
 const SHARES: [f64; 9] = [0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65];
 /// How far to the left of the path the cylinder is, m.
-const LEFT: [f64; 6] = [-0.05, -0.03, -0.01, 0.01, 0.03, 0.05];
+const LEFT: [f64; 6] = [-0.04, -0.025, -0.01, 0.01, 0.025, 0.04];
 /// How far apart the cores of a pair are, m.
-const GAPS: [f64; 3] = [0.025, 0.03, 0.035];
+const GAPS: [f64; 3] = [0.015, 0.0175, 0.02];
 
 /// Over places along the whole path and on both sides of it.
 ///
