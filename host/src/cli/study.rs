@@ -180,7 +180,7 @@ fn report(found: &Findings, skills: &Skills, common: &Common, introduction: &str
         }
         say!("\n  tables, figures and scenes: {}", shown(&common.out));
     }
-    Ok(if found.hold() { Outcome::Success } else { Outcome::Failed })
+    Ok(if found.is_well() { Outcome::Success } else { Outcome::Failed })
 }
 
 fn shown(folder: &Path) -> String {

@@ -132,19 +132,24 @@ pub fn charts(charts: &[Chart], columns: usize, width: f64) -> Figure {
     let mut svg = Svg::default();
     let columns = columns.max(1);
     let extents: Vec<Extent> = charts.iter().map(Chart::extent).collect();
-    let left = extents.iter().map(|e| Axes::left_room(e, width / columns as f64 * SHAPE)).fold(0.0, f64::max);
+    let left = extents.iter().map(|e| Axes::left_room_of_close_ticks(e, width / columns as f64 * SHAPE)).fold(0.0, f64::max);
     let each = (width - 2.0 * EDGE - BETWEEN * (columns - 1) as f64) / columns as f64 - left;
     let mut top = EDGE;
     for (row, (some, ranges)) in charts.chunks(columns).zip(extents.chunks(columns)).enumerate() {
         top += TITLE;
         let mut bottom = top;
+        // Beside a map the others are as high as it is.
+        let maps = some.iter().zip(ranges).filter(|(c, _)| c.map);
+        let height = maps.map(|(_, e)| each * e.size().y / e.size().x).fold(0.0, f64::max);
+        let height = if height > 0.0 { height } else { each * SHAPE };
         for (i, (chart, extent)) in some.iter().zip(ranges).enumerate() {
             let corner = Point2::new(EDGE + left + (each + left + BETWEEN) * i as f64, top);
             let axes = if chart.map {
                 Axes::equal(corner, each, *extent)
             } else {
-                Axes::free(corner, Vector2::new(each, each * SHAPE), *extent)
+                Axes::free(corner, Vector2::new(each, height), *extent)
             };
+            let axes = axes.with_close_ticks();
             chart.draw(&mut svg, &axes, &format!("chart{row}-{i}"));
             bottom = bottom.max(axes.end().y);
         }

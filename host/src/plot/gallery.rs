@@ -52,7 +52,7 @@ pub fn gallery(tiles: &[Tile<'_>], columns: usize, width: f64) -> Result<Figure,
     };
     extents.chunks_mut(columns).for_each(same_shape);
     let high = |e: &Extent| each(40.0) * e.size().y / e.size().x;
-    let left = extents.iter().map(|e| Axes::left_room(e, high(e)) - 14.0).fold(0.0, f64::max);
+    let left = extents.iter().map(|e| Axes::left_room_of_close_ticks(e, high(e)) - 14.0).fold(0.0, f64::max);
     let each = each(left);
     let mut svg = Svg::default();
     let mut top = EDGE;
@@ -63,7 +63,7 @@ pub fn gallery(tiles: &[Tile<'_>], columns: usize, width: f64) -> Result<Figure,
         let mut bottom = top;
         for (i, ((panels, extent), tile)) in panels.iter().zip(extents).zip(tiles).enumerate() {
             let corner = Point2::new(EDGE + left + (each + left + BETWEEN) * i as f64, top);
-            let axes = Axes::equal(corner, each, *extent);
+            let axes = Axes::equal(corner, each, *extent).with_close_ticks();
             for panel in panels {
                 panel.draw(&mut svg, &axes, &format!("tile{row}-{i}"));
             }

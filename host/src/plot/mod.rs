@@ -50,6 +50,8 @@ pub struct Options {
     pub streamlines: bool,
     /// Colour trajectories by their speed?
     pub speed: bool,
+    /// Show how near each trajectory comes to a core?
+    pub clearances: bool,
     /// A path to compare with, m; drawn under the trajectories.
     pub reference: Vec<Vector3<f64>>,
 }
@@ -57,7 +59,7 @@ pub struct Options {
 impl Default for Options {
     /// At time 0, 560 pixels wide, with everything.
     fn default() -> Self {
-        Self { time: 0.0, width: 560.0, streamlines: true, speed: true, reference: Vec::new() }
+        Self { time: 0.0, width: 560.0, streamlines: true, speed: true, clearances: true, reference: Vec::new() }
     }
 }
 

@@ -84,7 +84,8 @@ impl<'a> Panel<'a> {
                 let here = trajectories.iter().filter_map(|t| clearance(scene, &at(t, time)?));
                 here.filter(|c| c.distance() < NEAR * size(scene, trajectories)).collect()
             }
-            None => trajectories.iter().filter_map(|t| nearest_approach(scene, t)).collect(),
+            None if options.clearances => trajectories.iter().filter_map(|t| nearest_approach(scene, t)).collect(),
+            None => Vec::new(),
         };
         let field = (options.streamlines && flat).then(|| field::<2>(scene, time)).transpose()?;
         let overlaps = if flat { overlaps } else { Vec::new() };

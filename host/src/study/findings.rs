@@ -21,6 +21,9 @@ pub struct Verdict {
     pub measured: String,
     /// Does it hold?
     pub holds: bool,
+    /// Is it about arriving, keeping out of cores, or the same bits? A study fails where one of these does not hold; another that does not is what
+    /// it found.
+    pub vital: bool,
 }
 
 /// What a study found.
@@ -55,9 +58,9 @@ impl Findings {
         }
     }
 
-    /// Does all hold that should?
-    pub fn hold(&self) -> bool {
-        self.verdicts.iter().all(|v| v.holds)
+    /// Does all hold that is vital?
+    pub fn is_well(&self) -> bool {
+        self.verdicts.iter().all(|v| v.holds || !v.vital)
     }
 
     /// The verdicts as a table.

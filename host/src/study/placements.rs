@@ -69,6 +69,12 @@ impl Passed {
     fn speed_change(&self, column: usize) -> Option<f64> {
         Some(change_percent(self.runs[column].soft_speed?, self.runs[2].soft_speed?))
     }
+
+    /// Change of the time to the goal, likewise.
+    fn time_change(&self, column: usize) -> Option<f64> {
+        let (ours, original) = (&self.runs[column], &self.runs[2]);
+        (ours.reached && original.reached).then(|| change_percent(ours.time, original.time))
+    }
 }
 
 /// Runs all.
@@ -91,7 +97,7 @@ pub fn study(skills: &Skills, count: usize, seed: u64, done: &(dyn Fn(usize) + S
     let angles = angles::study(skill, done)?;
     let mut json = Map::new();
     json.insert("placements".into(), summary(&all, count));
-    let verdicts = vec![verdict(&all)];
+    let verdicts = verdicts(&all);
     let figures = vec![
         (
             "placements",
@@ -108,21 +114,21 @@ pub fn study(skills: &Skills, count: usize, seed: u64, done: &(dyn Fn(usize) + S
     Ok(Findings { tables, figures, verdicts, json, ..Findings::default() })
 }
 
-/// How often something is so, of those that passed on a side (both if none is given).
-fn share(all: &[Passed], side: Option<bool>, is: impl Fn(&Passed) -> bool) -> (usize, usize) {
-    let of: Vec<&Passed> = all.iter().filter(|p| side.is_none_or(|left| p.left == left)).collect();
-    (of.iter().filter(|p| is(p)).count(), of.len())
+/// How often something is so, and of how many, of those that passed on a side (both if none is given).
+fn share(all: &[Passed], side: Option<bool>, is: impl Fn(&Passed) -> Option<bool>) -> (usize, usize) {
+    let of = all.iter().filter(|p| side.is_none_or(|left| p.left == left)).filter_map(is);
+    of.fold((0, 0), |(n, of), is| (n + usize::from(is), of + 1))
 }
 
-/// What is counted.
-type Count = (&'static str, &'static str, fn(&Passed, usize) -> bool);
+/// What is counted; none where it cannot be said.
+type Count = (&'static str, &'static str, fn(&Passed, usize) -> Option<bool>);
 
 const COUNTS: [Count; 5] = [
-    ("reached the goal", "reached", |p, c| p.runs[c].reached),
-    ("slower in the layer than the original", "slower", |p, c| p.speed_change(c).is_some_and(|x| x < 0.0)),
-    ("stalled on the way", "stalled", |p, c| p.runs[c].stalled),
-    ("entered a hard core", "penetrated", |p, c| p.runs[c].touched),
-    ("guard acted", "guarded", |p, c| p.runs[c].guarded > 0.0),
+    ("reached the goal", "reached", |p, c| Some(p.runs[c].reached)),
+    ("slower than the original in the layer, of those that were there", "slower", |p, c| Some(p.speed_change(c)? < 0.0)),
+    ("stalled on the way", "stalled", |p, c| Some(p.runs[c].stalled)),
+    ("entered a hard core", "penetrated", |p, c| Some(p.runs[c].touched)),
+    ("guard acted", "guarded", |p, c| Some(p.runs[c].guarded > 0.0)),
 ];
 
 fn counts(all: &[Passed], count: usize) -> Table {
@@ -144,8 +150,9 @@ fn counts(all: &[Passed], count: usize) -> Table {
 /// A quantity with its unit.
 type Quantity = (&'static str, &'static str, usize, fn(&Passed, usize) -> Option<f64>);
 
-const QUANTITIES: [Quantity; 5] = [
+const QUANTITIES: [Quantity; 6] = [
     ("speed in the layer against the original, %", "speed_change_percent", 1, Passed::speed_change),
+    ("time to the goal against the original, %", "time_change_percent", 2, Passed::time_change),
     ("time to the goal, s", "time_s", 2, |p, c| p.runs[c].reached.then_some(p.runs[c].time)),
     ("min Gamma", "min_gamma", 3, |p, c| Some(p.runs[c].min_gamma)),
     ("root mean square jerk, m/s^3", "rms_jerk", 1, |p, c| Some(p.runs[c].jerk)),
@@ -175,8 +182,9 @@ fn summary(all: &[Passed], count: usize) -> Value {
     for (c, column) in Column::ALL.into_iter().enumerate() {
         let mut of = Map::new();
         for (_, key, is) in COUNTS {
-            let side = |left| share(all, left, |p| is(p, c)).0;
-            of.insert(key.into(), json!({ "left": side(Some(true)), "right": side(Some(false)) }));
+            let side = |left| share(all, left, |p| is(p, c));
+            let ((left, left_of), (right, right_of)) = (side(Some(true)), side(Some(false)));
+            of.insert(key.into(), json!({ "left": left, "right": right, "left_of": left_of, "right_of": right_of }));
         }
         for (_, key, _, quantity) in QUANTITIES {
             let all = values(all, |p| quantity(p, c));
@@ -188,25 +196,27 @@ fn summary(all: &[Passed], count: usize) -> Value {
     Value::Object(out)
 }
 
-fn verdict(all: &[Passed]) -> Verdict {
-    let count = |is: fn(&Passed, usize) -> bool, c: usize| share(all, None, |p| is(p, c)).0;
-    let [(_, _, reached), (_, _, slower), (_, _, stalled), (_, _, entered), _] = COUNTS;
-    let ours = [count(slower, 1), count(stalled, 1), count(entered, 1)];
-    Verdict {
-        claim: "wherever the obstacle is: arrives, never stalls, enters no core; how often it is slower than the original".into(),
-        paper: "-".into(),
-        measured: format!(
-            "{} of {} arrive, {} stall, {} enter, {} slower; to the letter {} arrive, {} stall, {} enter, {} slower",
-            count(reached, 1),
-            all.len(),
-            ours[1],
-            ours[2],
-            ours[0],
-            count(reached, 0),
-            count(stalled, 0),
-            count(entered, 0),
-            count(slower, 0)
-        ),
-        holds: count(reached, 1) == all.len() && ours[1] == 0 && ours[2] == 0,
-    }
+fn verdicts(all: &[Passed]) -> Vec<Verdict> {
+    let count = |what: usize, c: usize| share(all, None, |p| COUNTS[what].2(p, c)).0;
+    let [late, slower, stalled, entered] = [0, 1, 2, 3].map(|what| {
+        let of = |c| if what == 0 { all.len() - count(0, c) } else { count(what, c) };
+        [of(0), of(1), of(2)]
+    });
+    let said = |c: usize| format!("{} do not arrive, {} stall, {} are slower in the layer", late[c], stalled[c], slower[c]);
+    vec![
+        Verdict {
+            claim: "no core is entered, wherever the obstacle is and on whichever side it is passed".into(),
+            paper: "-".into(),
+            measured: format!("{} of {} enter one; to the letter {}", entered[1], all.len(), entered[0]),
+            holds: entered[1] == 0,
+            vital: true,
+        },
+        Verdict {
+            claim: "all arrive, and none is slower in a soft layer than by the original method".into(),
+            paper: "-".into(),
+            measured: format!("{}; to the letter {}; original: {} do not arrive", said(1), said(0), late[2]),
+            holds: late[1] + stalled[1] + slower[1] == 0,
+            vital: false,
+        },
+    ]
 }

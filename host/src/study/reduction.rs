@@ -117,6 +117,7 @@ pub fn study(skills: &Skills, done: &(dyn Fn(usize) + Sync)) -> Result<(Findings
         holds: arrived == found.len()
             && value(&mine, "min").is_some_and(|x| x > -0.5)
             && value(&near, "mean") > value(&mine, "mean"),
+        vital: false,
     };
     let findings = Findings { tables: vec![table], verdicts: vec![verdict], json, ..Findings::default() };
     Ok((findings, map(skill, &found, &body)))

@@ -25,6 +25,8 @@ pub struct Skill {
     pub start: Vector2<f64>,
     /// The way from there with nothing in between, one point a millimetre, m.
     pub path: Vec<Vector2<f64>>,
+    /// When it is there, s.
+    pub times: Vec<f64>,
 }
 
 /// A place on a skill's path.
@@ -61,15 +63,18 @@ impl Skill {
     /// The model is not stable, or not one of the plane.
     pub fn new(name: &'static str, origin: String, model: ModelFile, start: Vector2<f64>) -> Result<Self, Error> {
         let motion = Motion::Lpv(model.certify::<f64, 2>()?);
-        let (mut at, mut path) = (start, vec![start]);
+        let (mut at, mut path, mut times, mut time) = (start, vec![start], vec![0.0], 0.0);
         // No skill is 10 m long; one that is ends there.
         while path.len() < 10_000 && (at - motion.attractor()).norm() > STEP {
             let velocity = motion.velocity(&Vector::from(at));
             let middle = motion.velocity(&Vector::from(at + unit(&velocity) * (STEP / 2.0)));
             at += unit(&middle) * STEP;
+            // Where it stands still there is no path to go on with.
+            time += STEP / middle.norm().max(1e-6);
             path.push(at);
+            times.push(time);
         }
-        Ok(Self { name, origin, text: model.to_toml()?, model, start, path })
+        Ok(Self { name, origin, text: model.to_toml()?, model, start, path, times })
     }
 
     /// The place at a share of the path's length.
@@ -78,6 +83,12 @@ impl Skill {
         let i = ((share.clamp(0.0, 1.0) * last as f64) as usize).min(last);
         let (a, b) = (self.path.get(i).copied().unwrap_or(self.start), self.path.get(i + 1).copied());
         Place { at: a, along: unit(&(b.unwrap_or(a) - a)) }
+    }
+
+    /// When the motion is at a share of its path's length if nothing is in its way, s.
+    pub fn time(&self, share: f64) -> f64 {
+        let last = self.times.len().saturating_sub(1);
+        self.times.get((share.clamp(0.0, 1.0) * last as f64) as usize).copied().unwrap_or_default()
     }
 
     /// How far a point is from the path, m.

@@ -26,9 +26,9 @@ const BOX: f64 = 0.5 * UNIT;
 /// Hard semi-axes of the obstacle, m.
 pub const AXES: [f64; 2] = [0.06, 0.04];
 /// Where it is: at this share of the path, this far to its left, m.
-pub const PLACE: (f64, f64) = (0.55, 0.01);
+pub const PLACE: (f64, f64) = (0.53, 0.015);
 /// The radius of the target area, m, and how far from the core's end its middle is.
-const TARGET: f64 = 0.05;
+const TARGET: f64 = 0.06;
 
 /// The obstacle of both studies of time.
 pub fn obstacle(skill: &Skill, ratio: f64) -> Body {
@@ -62,14 +62,14 @@ impl Times {
     fn arrived(&self) -> usize {
         self.times.iter().flatten().count()
     }
-    /// Of those that arrived.
+    /// Of those that arrived; no number where none did.
     fn mean(&self) -> f64 {
-        self.times.iter().flatten().sum::<f64>() / self.arrived().max(1) as f64
+        self.times.iter().flatten().sum::<f64>() / self.arrived() as f64
     }
     fn deviation(&self) -> f64 {
         let mean = self.mean();
         let squares = self.times.iter().flatten().map(|t| (t - mean).powi(2)).sum::<f64>();
-        (squares / self.arrived().max(1) as f64).sqrt()
+        (squares / self.arrived() as f64).sqrt()
     }
 }
 
@@ -113,6 +113,7 @@ pub fn study(skills: &Skills, done: &(dyn Fn(usize) + Sync)) -> Result<(Findings
         paper: "falls".into(),
         measured: format!("{first:.2} s to {last:.2} s, {}", if falls { "at every step" } else { "not at every step" }),
         holds: falls,
+        vital: false,
     };
     let rows = |column: &'static str| {
         let of = found.iter().filter(move |t| t.column.key() == column);
@@ -129,7 +130,7 @@ fn chart(found: &[Times]) -> Chart {
     let mut series = Vec::new();
     let colours = [("original", Colour::Original), ("letter", Colour::Letter), ("pliant", Colour::Pliant)];
     for (key, colour) in colours {
-        let of: Vec<&Times> = found.iter().filter(|t| t.column.key() == key).collect();
+        let of: Vec<&Times> = found.iter().filter(|t| t.column.key() == key && t.arrived() > 0).collect();
         let Some(first) = of.first() else { continue };
         let at = |f: &dyn Fn(&Times) -> f64| of.iter().map(|t| (t.exponent.exp(), f(t))).collect::<Vec<_>>();
         if key == "pliant" {

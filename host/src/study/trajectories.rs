@@ -129,6 +129,7 @@ pub fn study(skills: &Skills, seed: u64, done: &(dyn Fn(usize) + Sync)) -> Resul
         paper: "all".into(),
         measured: format!("{reached} of {count}, min Gamma {least:.3}"),
         holds: reached == count && least > 1.0,
+        vital: true,
     };
     let mut figures = Vec::new();
     for (name, column) in [("trajectories", Column::Pliant), ("trajectories-letter", Column::ALL[0])] {
@@ -159,7 +160,7 @@ fn figure(runs: &[Runs], column: Column) -> Result<crate::plot::Figure, Error> {
             title: if r.obstacles == 1 { r.skill.into() } else { format!("{}, two", r.skill) },
             scene,
             trajectories,
-            options: Options { speed: false, ..Options::default() },
+            options: Options { speed: false, clearances: false, ..Options::default() },
         })
         .collect();
     Ok(gallery(&tiles, 3, 560.0)?)

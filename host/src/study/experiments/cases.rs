@@ -78,16 +78,29 @@ fn five(skill: &Skill) -> Vec<Body> {
     ]
 }
 
-/// D's way: from the top of the S to its middle and its bottom, each time into the robot's way.
+/// Where D's obstacle waits for the robot, by a share of the path, and from when to when, by the share of the path that the motion without it
+/// would then have done: the top of the S, its middle, its bottom.
+const STATIONS: [(f64, f64, f64); 3] = [(0.24, 0.0, 0.2), (0.52, 0.36, 0.46), (0.82, 0.66, 0.78)];
+/// How far to the left of the path each is, m.
+const D_BESIDE: f64 = 0.02;
+
+/// D's way from station to station.
 fn moving(skill: &Skill) -> Vec<Body> {
-    let at = |share: f64, left: f64| {
-        let place = skill.place(share);
-        place.at + place.left() * left
-    };
-    let (top, middle, bottom) = (at(0.25, 0.02), at(0.5, 0.02), at(0.8, 0.02));
-    let row = |t: f64, p: Vector2<f64>| [t, p.x, p.y];
-    let path = vec![row(0.0, top), row(0.8, top), row(1.8, middle), row(2.2, middle), row(3.4, bottom)];
+    let path: Vec<[f64; 3]> = STATIONS
+        .iter()
+        .flat_map(|(share, there, leaves)| {
+            let place = skill.place(*share);
+            let at = place.at + place.left() * D_BESIDE;
+            [skill.time(*there), skill.time(*leaves)].map(|t| [t, at.x, at.y])
+        })
+        .collect();
+    let top = path.first().map_or(skill.start, |[_, x, y]| Vector2::new(*x, *y));
     vec![Body { path, ..Body::new("cylinder", CYLINDER, RATIO, top, 0.0) }]
+}
+
+/// When a figure shows D, s: at each station.
+pub fn moments(skill: &Skill) -> [f64; 3] {
+    STATIONS.map(|(_, there, leaves)| (skill.time(there) + skill.time(leaves)) / 2.0)
 }
 
 /// All of them; `seed` is of the noise in what D1 sees.

@@ -8,12 +8,14 @@ use crate::plot::{Figure, Options, Tile, Trajectory, gallery};
 use crate::study::column::Column;
 use crate::study::drive::Step;
 use crate::study::measure::profile;
+use crate::study::world::World;
 
 /// Width of a figure for one column of a page, px.
 const COLUMN: f64 = 500.0;
 
 fn tile<'a>(outcome: &'a Outcome<'_>, trajectory: &'a [Trajectory], title: String) -> Tile<'a> {
-    let options = Options { reference: outcome.case.world.skill.path_in_space(), ..Options::default() };
+    let reference = outcome.case.world.skill.path_in_space();
+    let options = Options { reference, clearances: false, ..Options::default() };
     Tile { title, scene: &outcome.scene, trajectories: trajectory, options }
 }
 
@@ -31,6 +33,21 @@ pub fn side_by_side(all: &[Outcome<'_>], ids: &[&str], columns: usize) -> Result
         .map(|(o, path)| tile(o, path, format!("{}: {}", o.case.id, if o.case.ours { "ours" } else { "original" })))
         .collect();
     Ok(gallery(&tiles, columns, COLUMN)?)
+}
+
+/// The recorded motion alone, and C1.
+///
+/// # Errors
+/// None.
+pub fn complex(all: &[Outcome<'_>]) -> Result<Figure, Error> {
+    let Some(c1) = all.iter().find(|o| o.case.id == "C1" && o.column == Column::Pliant) else {
+        return Err(Error::failed("there is no C1"));
+    };
+    let alone = World::new(c1.case.world.skill, Vec::new()).scene("alone", Column::Pliant)?;
+    let path = vec![c1.drive.trajectory()];
+    let with = tile(c1, &path, "(b) five obstacles".into());
+    let without = Tile { title: "(a) the motion".into(), scene: &alone, trajectories: &[], options: with.options.clone() };
+    Ok(gallery(&[without, with], 2, 560.0)?)
 }
 
 /// The moving obstacle at three moments, each with the path up to then.

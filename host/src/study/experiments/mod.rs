@@ -27,8 +27,6 @@ pub const PAPER_GAIN: f64 = 26.34;
 pub const PAPER_CHANGE: f64 = -32.32;
 /// How near to these counts as the same, percentage points.
 pub const TOLERANCE: f64 = 3.0;
-/// When the moving obstacle is drawn, s.
-const MOMENTS: [f64; 3] = [0.7, 2.0, 3.2];
 
 /// Mean speeds compared, percent; none where a robot never was in the region.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,11 +93,11 @@ pub fn study(
         ("experiments-a", caption("A", "one cylinder"), figures::side_by_side(&all, &["A1", "A2", "A3"], 3)?),
         ("experiments-b", caption("B", "a cylinder and an ellipse"), figures::side_by_side(&all, &["B1", "B2", "B3", "B4"], 2)?),
         ("velocities", "Speeds where the paper compares them, from when the robot comes there".into(), figures::velocities(&all)),
-        ("experiment-c", caption("C1", "five obstacles"), figures::side_by_side(&all, &["C1"], 1)?),
+        ("experiment-c", caption("C1", "five obstacles"), figures::complex(&all)?),
         ("speed-spread", "The two claims for obstacles at other places on the path".into(), figures::spread(&places, [PAPER_GAIN, PAPER_CHANGE])),
     ];
     if let Some(d) = all.iter().find(|o| o.case.id == "D1" && o.column == Column::Pliant) {
-        found.figures.push(("experiment-d", caption("D1", "a moving cylinder"), figures::moments(d, MOMENTS)?));
+        found.figures.push(("experiment-d", caption("D1", "a moving cylinder"), figures::moments(d, cases::moments(&skills.s))?));
     }
     for o in &all {
         found.files.push((format!("{}-{}.toml", o.case.id, o.column.key()), o.case.world.toml(o.column)));
@@ -166,42 +164,50 @@ fn verdicts(skills: &Skills, all: &[Outcome<'_>], places: &Spread, on_device: &[
     let off = |id: &str| find(id).map_or(f64::NAN, |o| o.deviation().0);
     let well = all.iter().filter(|o| !matches!(o.column, Column::Letter(_)));
     let (well, count) = well.fold((0, 0), |(well, count), o| (well + usize::from(o.is_well()), count + 1));
+    let faster = places.soft.iter().filter(|x| **x > 0.0).count();
+    let slower = places.intersection.iter().filter(|x| **x < 0.0).count();
+    let range = |all: &[f64]| format!("{} to {} %", signed(all.first().copied(), 1), signed(all.last().copied(), 1));
     let mut out = vec![
         Verdict {
             claim: format!("A1 against A3: mean speed in the soft region, within {TOLERANCE} points"),
             paper: format!("{PAPER_GAIN:+.2} %{note}"),
             measured: percent(claims.soft_region_speed_gain),
             holds: near(claims.soft_region_speed_gain, PAPER_GAIN),
+            vital: false,
         },
         Verdict {
             claim: format!("B1 against B3: mean speed in the intersection, within {TOLERANCE} points"),
             paper: format!("{PAPER_CHANGE:+.2} %{note}"),
             measured: percent(claims.intersection_speed_change),
             holds: near(claims.intersection_speed_change, PAPER_CHANGE),
+            vital: false,
         },
         Verdict {
             claim: "every experiment reaches the goal and touches no core".into(),
             paper: "all".into(),
             measured: format!("{well} of {count}"),
             holds: well == count,
+            vital: true,
         },
         Verdict {
             claim: "A1 follows the path without obstacles closer than A2".into(),
             paper: "yes".into(),
             measured: format!("{:.1} mm against {:.1} mm off it, in the mean", off("A1") * 1e3, off("A2") * 1e3),
             holds: off("A1") < off("A2"),
+            vital: false,
         },
         Verdict {
             claim: "faster in a soft layer, slower in an intersection, wherever the obstacles are".into(),
             paper: "-".into(),
             measured: format!(
-                "{} to {} %; {} to {} %",
-                signed(places.soft.first().copied(), 1),
-                signed(places.soft.last().copied(), 1),
-                signed(places.intersection.first().copied(), 1),
-                signed(places.intersection.last().copied(), 1)
+                "faster at {faster} of {} places ({}), slower at {slower} of {} ({})",
+                places.soft.len(),
+                range(&places.soft),
+                places.intersection.len(),
+                range(&places.intersection)
             ),
-            holds: places.soft.first().is_some_and(|x| *x > 0.0) && places.intersection.last().is_some_and(|x| *x < 0.0),
+            holds: (faster, slower) == (places.soft.len(), places.intersection.len()),
+            vital: false,
         },
     ];
     out.extend(on_device.iter().map(|c| Verdict {
@@ -209,6 +215,7 @@ fn verdicts(skills: &Skills, all: &[Outcome<'_>], places: &Spread, on_device: &[
         paper: "-".into(),
         measured: format!("{} ticks, {}", c.ticks, if c.identical { "identical" } else { "different" }),
         holds: c.identical && c.reached && c.min_gamma > 1.0,
+        vital: true,
     }));
     out
 }

@@ -15,7 +15,7 @@ use crate::study::world::World;
 /// Degrees between two angles.
 const STEP: i32 = 10;
 /// Where the cylinder is: at this share of the path, this far to its left or its right, m.
-const PLACE: (f64, f64) = (0.45, 0.05);
+const PLACE: (f64, f64) = (0.53, 0.025);
 
 /// What came of an angle on a side.
 #[derive(Clone, Copy, Debug)]
@@ -72,6 +72,8 @@ pub fn figure(all: &[Angle]) -> Figure {
                 .collect::<Vec<_>>()
         };
         let level = of.iter().find(|a| a.degrees.is_none()).and_then(|a| a.change).unwrap_or(f64::NAN);
+        let changes = || all.iter().filter_map(|a| a.change).chain([0.0]);
+        let (lowest, highest) = (changes().fold(0.0, f64::min) - 5.0, changes().fold(0.0, f64::max) + 5.0);
         let chosen = f64::from(THETA.to_degrees().round() as i32);
         let dashed = |name: &str, colour, points| Series { mark: Mark::Dashed, ..Series::line(name, colour, points) };
         Chart {
@@ -81,11 +83,12 @@ pub fn figure(all: &[Angle]) -> Figure {
             series: vec![
                 dashed("original", Colour::Original, vec![(-180.0, 0.0), (180.0, 0.0)]),
                 Series::line("with the flow (default)", Colour::Pliant, vec![(-180.0, level), (180.0, level)]),
-                dashed("theta_2 of the other studies", Colour::Reference, vec![(chosen, -110.0), (chosen, 110.0)]),
+                dashed("theta_2 of the other studies", Colour::Reference, vec![(chosen, lowest), (chosen, highest)]),
                 Series::line("paper to the letter", Colour::Letter, points(false)),
                 Series { mark: Mark::Dots, ..Series::line("never arrived, or entered the core", Colour::Letter, points(true)) },
             ],
             x_range: Some((-180.0, 180.0)),
+            y_range: Some((lowest, highest)),
             ..Chart::default()
         }
     };

@@ -9,7 +9,7 @@ use crate::study::skill::Skill;
 use crate::study::world::Body;
 
 /// How much of the way from the core to the end of the layer, along the normal of the path, the path may be from the core.
-const THROUGH: (f64, f64) = (0.05, 0.9);
+const THROUGH: (f64, f64) = (0.0, 0.6);
 
 /// So many obstacles whose soft layer the path passes through, each once on its left and once on its right; none with start or goal in its layer.
 pub fn pairs(skill: &Skill, count: usize, seed: u64) -> Vec<[Body; 2]> {

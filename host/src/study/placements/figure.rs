@@ -16,7 +16,7 @@ pub fn distributions(all: &[Passed]) -> Figure {
         let (low, high) = (ends(0.01).fold(f64::INFINITY, f64::min), ends(0.99).fold(f64::NEG_INFINITY, f64::max));
         let room = (high - low).max(1e-9) * 0.04;
         // What changes against the original does so by nothing for the original itself.
-        let shown = if *key == "speed_change_percent" { 2 } else { 3 };
+        let shown = if key.ends_with("change_percent") { 2 } else { 3 };
         let series = Column::ALL.into_iter().zip(COLOURS).zip(&each).take(shown);
         Chart {
             x: (*name).into(),
@@ -28,5 +28,5 @@ pub fn distributions(all: &[Passed]) -> Figure {
         }
     };
     let all: Vec<Chart> = QUANTITIES.iter().map(chart).collect();
-    charts(&all, 2, 560.0)
+    charts(&all, 2, 500.0)
 }
