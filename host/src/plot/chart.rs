@@ -132,7 +132,8 @@ pub fn charts(charts: &[Chart], columns: usize, width: f64) -> Figure {
     let mut svg = Svg::default();
     let columns = columns.max(1);
     let extents: Vec<Extent> = charts.iter().map(Chart::extent).collect();
-    let left = extents.iter().map(|e| Axes::left_room_of_close_ticks(e, width / columns as f64 * SHAPE)).fold(0.0, f64::max);
+    let left =
+        extents.iter().map(|e| Axes::left_room_of_close_ticks(e, width / columns as f64 * SHAPE)).fold(0.0, f64::max);
     let each = (width - 2.0 * EDGE - BETWEEN * (columns - 1) as f64) / columns as f64 - left;
     let mut top = EDGE;
     for (row, (some, ranges)) in charts.chunks(columns).zip(extents.chunks(columns)).enumerate() {
@@ -278,7 +279,7 @@ fn shade(share: f64) -> String {
 /// Each name once; the lower end of the last line.
 fn legend(svg: &mut Svg, charts: &[Chart], corner: Pixel, right: f64) -> f64 {
     let mut known: Vec<&Series> = Vec::new();
-    for s in charts.iter().flat_map(|c| &c.series).filter(|s| !s.name.is_empty()) {
+    for s in charts.iter().flat_map(|c| &c.series).filter(|s| !s.name.is_empty() && !s.points.is_empty()) {
         if known.iter().all(|k| k.name != s.name) {
             known.push(s);
         }
@@ -312,7 +313,13 @@ mod tests {
         let line = || Series::line("speed & time", Colour::Letter, vec![(0.0, 1.0), (1.0, 3.0)]);
         let band = Series { mark: Mark::Band(vec![-5.0, 0.0]), name: "spread".into(), ..line() };
         let cell = Cell { at: (0.5, 2.0), side: 0.2, share: -0.3, label: "-3".into() };
-        let chart = Chart { title: "one".into(), x: "x (m)".into(), series: vec![line(), band], cells: vec![cell], ..Chart::default() };
+        let chart = Chart {
+            title: "one".into(),
+            x: "x (m)".into(),
+            series: vec![line(), band],
+            cells: vec![cell],
+            ..Chart::default()
+        };
         let svg = charts(&[chart.clone(), Chart { title: "two".into(), ..chart }], 2, 400.0);
         let text = svg.svg();
         assert_eq!(text.matches("speed &amp; time</text>").count(), 1);

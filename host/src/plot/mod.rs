@@ -33,8 +33,8 @@ use nalgebra::{Point2, Vector2, Vector3};
 
 use crate::scene::{ConvertError, Scene};
 use figure::{Anchor, Axes, Svg};
-use panel::Panel;
 pub use gallery::{Tile, gallery};
+use panel::Panel;
 pub use streamlines::streamlines;
 pub use trajectory::{Trajectory, TrajectoryPoint, trajectories};
 use view::View;

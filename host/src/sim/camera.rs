@@ -145,7 +145,8 @@ mod tests {
         let seen = sights(&scene, Perception { noise, latency: 15, seed: 3 });
         assert!(seen.len() > 80 && seen[0].0 == 0);
         assert!(seen.iter().skip(1).all(|(told, sight)| *told == sight.tick + 15 && sight.tick % 33 == 0));
-        let settled: Vec<_> = seen.iter().skip(30).map(|(_, s)| (s.obstacles[0].pose, scene.obstacles()[0].at(s.time()).pose)).collect();
+        let settled: Vec<_> =
+            seen.iter().skip(30).map(|(_, s)| (s.obstacles[0].pose, scene.obstacles()[0].at(s.time()).pose)).collect();
         let rms = |f: &dyn Fn(&(crate::scene::Pose, crate::scene::Pose)) -> f64| {
             (settled.iter().map(|p| f(p).powi(2)).sum::<f64>() / settled.len() as f64).sqrt()
         };

@@ -46,9 +46,9 @@ impl Column {
     /// The part of a scene file that says so.
     pub fn toml(self) -> String {
         match self {
-            Self::Letter(theta) => format!(
-                "[modulation]\nc = {GAIN:?}\nsteering = {{ fixed = {theta:?} }}\n[guard]\nenabled = false\n"
-            ),
+            Self::Letter(theta) => {
+                format!("[modulation]\nc = {GAIN:?}\nsteering = {{ fixed = {theta:?} }}\n[guard]\nenabled = false\n")
+            }
             Self::Pliant => format!("[modulation]\nc = {GAIN:?}\n"),
             Self::Original => "[modulation]\nmethod = \"original\"\n[guard]\nenabled = false\n".into(),
         }

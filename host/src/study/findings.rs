@@ -74,7 +74,8 @@ impl Findings {
 
     /// All numbers, and the verdicts.
     pub fn to_json(&self) -> Value {
-        let verdict = |v: &Verdict| json!({"claim": v.claim, "paper": v.paper, "measured": v.measured, "holds": v.holds});
+        let verdict =
+            |v: &Verdict| json!({"claim": v.claim, "paper": v.paper, "measured": v.measured, "holds": v.holds});
         let mut all = self.json.clone();
         all.insert("verdicts".into(), self.verdicts.iter().map(verdict).collect());
         Value::Object(all)

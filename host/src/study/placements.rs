@@ -83,7 +83,8 @@ impl Passed {
 /// None for the skills there are.
 pub fn study(skills: &Skills, count: usize, seed: u64, done: &(dyn Fn(usize) + Sync)) -> Result<Findings, Error> {
     let skill = &skills.s;
-    let bodies: Vec<_> = draw::pairs(skill, count, seed).into_iter().flat_map(|[l, r]| [(true, l), (false, r)]).collect();
+    let bodies: Vec<_> =
+        draw::pairs(skill, count, seed).into_iter().flat_map(|[l, r]| [(true, l), (false, r)]).collect();
     let all = parallel::map(&bodies, done, |(left, body)| {
         let world = World { timeout: 15.0, ..World::new(skill, vec![body.clone()]) };
         let driving = Driving { ends_at_contact: true, ..Driving::of(Robot::Exact) };
@@ -125,15 +126,20 @@ type Count = (&'static str, &'static str, fn(&Passed, usize) -> Option<bool>);
 
 const COUNTS: [Count; 5] = [
     ("reached the goal", "reached", |p, c| Some(p.runs[c].reached)),
-    ("slower than the original in the layer, of those that were there", "slower", |p, c| Some(p.speed_change(c)? < 0.0)),
+    ("slower than the original in the layer, of those that were there", "slower", |p, c| {
+        Some(p.speed_change(c)? < 0.0)
+    }),
     ("stalled on the way", "stalled", |p, c| Some(p.runs[c].stalled)),
     ("entered a hard core", "penetrated", |p, c| Some(p.runs[c].touched)),
     ("guard acted", "guarded", |p, c| Some(p.runs[c].guarded > 0.0)),
 ];
 
 fn counts(all: &[Passed], count: usize) -> Table {
-    let title = format!("{count} random obstacles on each side of the path: share of runs, percent (left of the path / right of it)");
-    let mut table = Table::new("placements", title, &["what", "paper to the letter", "Pliant's default", "original (Huber 2019)"]);
+    let title = format!(
+        "{count} random obstacles on each side of the path: share of runs, percent (left of the path / right of it)"
+    );
+    let mut table =
+        Table::new("placements", title, &["what", "paper to the letter", "Pliant's default", "original (Huber 2019)"]);
     for (name, _, is) in COUNTS {
         let cell = |c: usize| {
             let percent = |left| {
@@ -147,16 +153,63 @@ fn counts(all: &[Passed], count: usize) -> Table {
     table
 }
 
-/// A quantity with its unit.
-type Quantity = (&'static str, &'static str, usize, fn(&Passed, usize) -> Option<f64>);
+/// A quantity.
+struct Quantity {
+    /// What it is.
+    name: &'static str,
+    /// Its unit, or what it is measured by.
+    unit: &'static str,
+    /// What JSON calls it.
+    key: &'static str,
+    /// As many are written.
+    decimals: usize,
+    /// Its value for a column.
+    of: fn(&Passed, usize) -> Option<f64>,
+}
 
 const QUANTITIES: [Quantity; 6] = [
-    ("speed in the layer against the original, %", "speed_change_percent", 1, Passed::speed_change),
-    ("time to the goal against the original, %", "time_change_percent", 2, Passed::time_change),
-    ("time to the goal, s", "time_s", 2, |p, c| p.runs[c].reached.then_some(p.runs[c].time)),
-    ("min Gamma", "min_gamma", 3, |p, c| Some(p.runs[c].min_gamma)),
-    ("root mean square jerk, m/s^3", "rms_jerk", 1, |p, c| Some(p.runs[c].jerk)),
-    ("largest jump of velocity in 1 ms, m/s", "velocity_jump", 4, |p, c| Some(p.runs[c].jump)),
+    Quantity {
+        name: "speed in the layer",
+        unit: "against the original (%)",
+        key: "speed_change_percent",
+        decimals: 1,
+        of: Passed::speed_change,
+    },
+    Quantity {
+        name: "time to the goal",
+        unit: "against the original (%)",
+        key: "time_change_percent",
+        decimals: 2,
+        of: Passed::time_change,
+    },
+    Quantity {
+        name: "time",
+        unit: "to the goal (s)",
+        key: "time_s",
+        decimals: 2,
+        of: |p, c| p.runs[c].reached.then_some(p.runs[c].time),
+    },
+    Quantity {
+        name: "nearest to a core",
+        unit: "min Gamma",
+        key: "min_gamma",
+        decimals: 3,
+        of: |p, c| Some(p.runs[c].min_gamma),
+    },
+    Quantity {
+        name: "jerk",
+        unit: "root mean square (m/s\u{b3})",
+        key: "rms_jerk",
+        decimals: 1,
+        of: |p, c| Some(p.runs[c].jerk),
+    },
+    Quantity {
+        name: "largest jump in 1 ms",
+        unit: "of velocity (m/s)",
+        key: "velocity_jump",
+        decimals: 4,
+        of: |p, c| Some(p.runs[c].jump),
+    },
 ];
 
 fn values(all: &[Passed], of: impl Fn(&Passed) -> Option<f64>) -> Vec<f64> {
@@ -165,13 +218,17 @@ fn values(all: &[Passed], of: impl Fn(&Passed) -> Option<f64>) -> Vec<f64> {
 
 fn quantiles(all: &[Passed]) -> Table {
     let title = "The same runs: 5 %, 50 % and 95 % of all are no larger";
-    let mut table = Table::new("placements-quantiles", title, &["what", "paper to the letter", "Pliant's default", "original (Huber 2019)"]);
-    for (name, _, decimals, of) in QUANTITIES {
+    let mut table = Table::new(
+        "placements-quantiles",
+        title,
+        &["what", "paper to the letter", "Pliant's default", "original (Huber 2019)"],
+    );
+    for q in QUANTITIES {
         let cell = |c: usize| {
-            let all = values(all, |p| of(p, c));
-            [0.05, 0.5, 0.95].map(|share| number(quantile(&all, share), decimals)).join(", ")
+            let all = values(all, |p| (q.of)(p, c));
+            [0.05, 0.5, 0.95].map(|share| number(quantile(&all, share), q.decimals)).join(", ")
         };
-        table.push([name.into(), cell(0), cell(1), cell(2)]);
+        table.push([format!("{}, {}", q.name, q.unit), cell(0), cell(1), cell(2)]);
     }
     table
 }
@@ -186,10 +243,13 @@ fn summary(all: &[Passed], count: usize) -> Value {
             let ((left, left_of), (right, right_of)) = (side(Some(true)), side(Some(false)));
             of.insert(key.into(), json!({ "left": left, "right": right, "left_of": left_of, "right_of": right_of }));
         }
-        for (_, key, _, quantity) in QUANTITIES {
-            let all = values(all, |p| quantity(p, c));
+        for q in QUANTITIES {
+            let all = values(all, |p| (q.of)(p, c));
             let at = |share| quantile(&all, share);
-            of.insert(key.into(), json!({ "p05": at(0.05), "p50": at(0.5), "p95": at(0.95), "least": all.first(), "most": all.last() }));
+            of.insert(
+                q.key.into(),
+                json!({ "p05": at(0.05), "p50": at(0.5), "p95": at(0.95), "least": all.first(), "most": all.last() }),
+            );
         }
         out.insert(column.key().into(), of.into());
     }
@@ -202,7 +262,8 @@ fn verdicts(all: &[Passed]) -> Vec<Verdict> {
         let of = |c| if what == 0 { all.len() - count(0, c) } else { count(what, c) };
         [of(0), of(1), of(2)]
     });
-    let said = |c: usize| format!("{} do not arrive, {} stall, {} are slower in the layer", late[c], stalled[c], slower[c]);
+    let said =
+        |c: usize| format!("{} do not arrive, {} stall, {} are slower in the layer", late[c], stalled[c], slower[c]);
     vec![
         Verdict {
             claim: "no core is entered, wherever the obstacle is and on whichever side it is passed".into(),

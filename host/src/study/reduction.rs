@@ -74,7 +74,15 @@ pub fn study(skills: &Skills, done: &(dyn Fn(usize) + Sync)) -> Result<(Findings
         Ok(Start { at: *at, pliant, letter, original, soft })
     })?;
     let title = "Time to the goal by where it starts; reduction against the original method in percent";
-    let header = ["x m", "y m", "original s", "Pliant's default s", "paper to the letter s", "reduction, default", "reduction, letter"];
+    let header = [
+        "x m",
+        "y m",
+        "original s",
+        "Pliant's default s",
+        "paper to the letter s",
+        "reduction, default",
+        "reduction, letter",
+    ];
     let mut table = Table::new("time-reduction", title, &header);
     for s in &found {
         table.push([
@@ -129,7 +137,9 @@ fn map(skill: &Skill, found: &[Start], body: &super::world::Body) -> Chart {
         at: (s.at.x, s.at.y),
         side: AREA / SIDE as f64,
         share: s.reduction().unwrap_or(-most) / most,
-        label: s.reduction().map_or("-".into(), |r| format!("{r:.0}").replace('-', "\u{2212}").replace("\u{2212}0", "0")),
+        label: s
+            .reduction()
+            .map_or("-".into(), |r| format!("{r:.0}").replace('-', "\u{2212}").replace("\u{2212}0", "0")),
     });
     let ring = |ratio: f64| {
         let turn = Rotation2::new(body.angle);

@@ -168,8 +168,12 @@ fn learnt(folder: &Path, i: usize) -> Result<Skill, Error> {
     let (name, file) = NAMES[i];
     let options = learn::Options { name: name.to_lowercase(), ..learn::Options::default() };
     let learnt = learn::learn(&[folder.join(file)], &options, &|_| {})?;
-    let starts: Vec<Vector2<f64>> =
-        learnt.demonstrations.items().iter().filter_map(|d| Some(Vector2::new(*d.x.first()?.get(0)?, d.x[0][1]))).collect();
+    let starts: Vec<Vector2<f64>> = learnt
+        .demonstrations
+        .items()
+        .iter()
+        .filter_map(|d| Some(Vector2::new(*d.x.first()?.get(0)?, d.x[0][1])))
+        .collect();
     let mean = starts.iter().sum::<Vector2<f64>>() / starts.len().max(1) as f64;
     Skill::new(name, format!("LASA handwriting, {file}"), learnt.model, mean)
 }

@@ -92,8 +92,12 @@ pub fn study(skills: &Skills, done: &(dyn Fn(usize) + Sync)) -> Result<(Findings
         let times = starts.iter().map(time).collect::<Result<_, _>>()?;
         Ok(Times { exponent: *exponent, column: *column, times })
     })?;
-    let title = format!("Time from {} places in a box of {BOX} m beside the obstacle to an area behind it, mean (standard deviation), s", starts.len());
-    let mut table = Table::new("time-vs-k", title, &["ln k", "k", "computed by", "arrived", "mean s", "standard deviation s"]);
+    let title = format!(
+        "Time from {} places in a box of {BOX} m beside the obstacle to an area behind it, mean (standard deviation), s",
+        starts.len()
+    );
+    let mut table =
+        Table::new("time-vs-k", title, &["ln k", "k", "computed by", "arrived", "mean s", "standard deviation s"]);
     for t in &found {
         table.push([
             number(t.exponent, 2),
@@ -120,8 +124,12 @@ pub fn study(skills: &Skills, done: &(dyn Fn(usize) + Sync)) -> Result<(Findings
         of.map(|t| json!({ "k": t.exponent.exp(), "mean_s": t.mean(), "deviation_s": t.deviation(), "arrived": t.arrived(), "starts": t.times.len() }))
     };
     let mut json = Map::new();
-    let all_ways = json!({ "letter": rows("letter").collect::<Vec<_>>(), "original": rows("original").collect::<Vec<_>>() });
-    json.insert("claims".into(), json!({ "time_vs_k": rows("pliant").collect::<Vec<_>>(), "time_vs_k_others": all_ways }));
+    let all_ways =
+        json!({ "letter": rows("letter").collect::<Vec<_>>(), "original": rows("original").collect::<Vec<_>>() });
+    json.insert(
+        "claims".into(),
+        json!({ "time_vs_k": rows("pliant").collect::<Vec<_>>(), "time_vs_k_others": all_ways }),
+    );
     let findings = Findings { tables: vec![table], verdicts: vec![verdict], json, ..Findings::default() };
     Ok((findings, chart(&found)))
 }
@@ -141,5 +149,11 @@ fn chart(found: &[Times]) -> Chart {
         let mark = if key == "original" { Mark::Dashed } else { Mark::Dotted };
         series.push(Series { name: first.column.title().into(), colour, mark, points: at(&|t| t.mean()) });
     }
-    Chart { title: "(a) time past the obstacle".into(), x: "k".into(), y: "time (s)".into(), series, ..Chart::default() }
+    Chart {
+        title: "(a) time past the obstacle".into(),
+        x: "k".into(),
+        y: "time (s)".into(),
+        series,
+        ..Chart::default()
+    }
 }

@@ -51,7 +51,7 @@ impl Runs {
 /// One ellipse on the path, or two with the path between them.
 fn bodies(skill: &Skill, two: bool) -> Vec<Body> {
     const AXES: [f64; 2] = [0.05, 0.03];
-    const RATIO: f64 = 1.6;
+    const RATIO: f64 = 1.9;
     let place = skill.place(0.5);
     let angle = place.heading() + 0.4;
     let mut first = Body::new("first", AXES, RATIO, place.at, angle);
@@ -101,7 +101,8 @@ pub fn study(skills: &Skills, seed: u64, done: &(dyn Fn(usize) + Sync)) -> Resul
         Ok(Runs { skill, obstacles, column: *column, scene, drives })
     })?;
     let title = format!("Motions from {STARTS} places each, with a robot that follows exactly");
-    let header = ["motion", "obstacles", "computed by", "starts", "reached", "touched a core", "min Gamma", "mean time s"];
+    let header =
+        ["motion", "obstacles", "computed by", "starts", "reached", "touched a core", "min Gamma", "mean time s"];
     let mut table = Table::new("trajectories", title, &header);
     let mut json = Vec::new();
     for r in &runs {

@@ -1,6 +1,5 @@
 //! The experiments A1 to D1: what the paper's Table I puts on the table, in metres, on the path of its S-shape.
 
-use nalgebra::Vector2;
 
 use crate::sim::Perception;
 use crate::study::column::{Column, THETA};
@@ -80,21 +79,28 @@ fn five(skill: &Skill) -> Vec<Body> {
 
 /// Where D's obstacle waits for the robot, by a share of the path, and from when to when, by the share of the path that the motion without it
 /// would then have done: the top of the S, its middle, its bottom.
-const STATIONS: [(f64, f64, f64); 3] = [(0.24, 0.0, 0.2), (0.52, 0.36, 0.46), (0.82, 0.66, 0.78)];
+const STATIONS: [(f64, f64, f64); 3] = [(0.24, 0.0, 0.16), (0.52, 0.42, 0.48), (0.82, 0.74, 0.9)];
 /// How far to the left of the path each is, m.
 const D_BESIDE: f64 = 0.02;
+/// Straight pieces of the way from one to the next.
+const PIECES: u32 = 12;
 
-/// D's way from station to station.
+/// D's way from station to station, as a hand moves things: it sets out and arrives gently.
 fn moving(skill: &Skill) -> Vec<Body> {
-    let path: Vec<[f64; 3]> = STATIONS
-        .iter()
-        .flat_map(|(share, there, leaves)| {
-            let place = skill.place(*share);
-            let at = place.at + place.left() * D_BESIDE;
-            [skill.time(*there), skill.time(*leaves)].map(|t| [t, at.x, at.y])
-        })
-        .collect();
-    let top = path.first().map_or(skill.start, |[_, x, y]| Vector2::new(*x, *y));
+    let stations = STATIONS.map(|(share, there, leaves)| {
+        let place = skill.place(share);
+        (place.at + place.left() * D_BESIDE, skill.time(there), skill.time(leaves))
+    });
+    let [(top, ..), ..] = stations;
+    let mut path = vec![[0.0, top.x, top.y]];
+    for pair in stations.windows(2) {
+        let [(from, _, leaves), (to, there, _)] = [pair[0], pair[1]];
+        path.extend((0..=PIECES).map(|i| {
+            let u = f64::from(i) / f64::from(PIECES);
+            let at = from + (to - from) * (u * u * (3.0 - 2.0 * u));
+            [leaves + (there - leaves) * u, at.x, at.y]
+        }));
+    }
     vec![Body { path, ..Body::new("cylinder", CYLINDER, RATIO, top, 0.0) }]
 }
 
@@ -129,6 +135,11 @@ pub fn cases(skills: &Skills, seed: u64) -> Vec<Case<'_>> {
         case("B3", b.clone(), false),
         case("B4", hardened(&b), false),
         Case { id: "C1", world: World::new(&skills.recorded, five(&skills.recorded)), ours: true, perception: exact },
-        Case { id: "D1", world: World::new(s, moving(s)), ours: true, perception: Perception { noise: NOISE, latency: LATENCY, seed } },
+        Case {
+            id: "D1",
+            world: World::new(s, moving(s)),
+            ours: true,
+            perception: Perception { noise: NOISE, latency: LATENCY, seed },
+        },
     ]
 }

@@ -24,8 +24,10 @@ fn tile<'a>(outcome: &'a Outcome<'_>, trajectory: &'a [Trajectory], title: Strin
 /// # Errors
 /// None.
 pub fn side_by_side(all: &[Outcome<'_>], ids: &[&str], columns: usize) -> Result<Figure, Error> {
-    let some: Vec<&Outcome<'_>> =
-        ids.iter().filter_map(|id| all.iter().find(|o| o.case.id == *id && !matches!(o.column, Column::Letter(_)))).collect();
+    let some: Vec<&Outcome<'_>> = ids
+        .iter()
+        .filter_map(|id| all.iter().find(|o| o.case.id == *id && !matches!(o.column, Column::Letter(_))))
+        .collect();
     let paths: Vec<Vec<Trajectory>> = some.iter().map(|o| vec![o.drive.trajectory()]).collect();
     let tiles: Vec<Tile<'_>> = some
         .iter()
@@ -46,7 +48,8 @@ pub fn complex(all: &[Outcome<'_>]) -> Result<Figure, Error> {
     let alone = World::new(c1.case.world.skill, Vec::new()).scene("alone", Column::Pliant)?;
     let path = vec![c1.drive.trajectory()];
     let with = tile(c1, &path, "(b) five obstacles".into());
-    let without = Tile { title: "(a) the motion".into(), scene: &alone, trajectories: &[], options: with.options.clone() };
+    let without =
+        Tile { title: "(a) the motion".into(), scene: &alone, trajectories: &[], options: with.options.clone() };
     Ok(gallery(&[without, with], 2, 560.0)?)
 }
 
@@ -112,9 +115,7 @@ pub fn spread(spread: &Spread, paper: [f64; 2]) -> Figure {
         y_range: Some((0.0, 100.0)),
         ..Chart::default()
     };
-    let all = [
-        chart("(a) soft layer", &spread.soft, paper[0]),
-        chart("(b) intersection", &spread.intersection, paper[1]),
-    ];
+    let all =
+        [chart("(a) soft layer", &spread.soft, paper[0]), chart("(b) intersection", &spread.intersection, paper[1])];
     charts(&all, 2, COLUMN)
 }

@@ -91,13 +91,29 @@ pub fn study(
     }
     found.figures = vec![
         ("experiments-a", caption("A", "one cylinder"), figures::side_by_side(&all, &["A1", "A2", "A3"], 3)?),
-        ("experiments-b", caption("B", "a cylinder and an ellipse"), figures::side_by_side(&all, &["B1", "B2", "B3", "B4"], 2)?),
-        ("velocities", "Speeds where the paper compares them, from when the robot comes there".into(), figures::velocities(&all)),
+        (
+            "experiments-b",
+            caption("B", "a cylinder and an ellipse"),
+            figures::side_by_side(&all, &["B1", "B2", "B3", "B4"], 2)?,
+        ),
+        (
+            "velocities",
+            "Speeds where the paper compares them, from when the robot comes there".into(),
+            figures::velocities(&all),
+        ),
         ("experiment-c", caption("C1", "five obstacles"), figures::complex(&all)?),
-        ("speed-spread", "The two claims for obstacles at other places on the path".into(), figures::spread(&places, [PAPER_GAIN, PAPER_CHANGE])),
+        (
+            "speed-spread",
+            "The two claims for obstacles at other places on the path".into(),
+            figures::spread(&places, [PAPER_GAIN, PAPER_CHANGE]),
+        ),
     ];
     if let Some(d) = all.iter().find(|o| o.case.id == "D1" && o.column == Column::Pliant) {
-        found.figures.push(("experiment-d", caption("D1", "a moving cylinder"), figures::moments(d, cases::moments(&skills.s))?));
+        found.figures.push((
+            "experiment-d",
+            caption("D1", "a moving cylinder"),
+            figures::moments(d, cases::moments(&skills.s))?,
+        ));
     }
     for o in &all {
         found.files.push((format!("{}-{}.toml", o.case.id, o.column.key()), o.case.world.toml(o.column)));
@@ -114,8 +130,20 @@ fn caption(of: &str, what: &str) -> String {
 }
 
 fn runs_table(all: &[Outcome<'_>]) -> Table {
-    let title = format!("Experiments, c = {GAIN} m/s in all; speeds in m/s, distances from the path without obstacles in mm");
-    let header = ["case", "computed by", "reached", "time s", "min Gamma", "soft", "intersection", "off path, mean", "off path, most", "guard acted %"];
+    let title =
+        format!("Experiments, c = {GAIN} m/s in all; speeds in m/s, distances from the path without obstacles in mm");
+    let header = [
+        "case",
+        "computed by",
+        "reached",
+        "time s",
+        "min Gamma",
+        "soft",
+        "intersection",
+        "off path, mean",
+        "off path, most",
+        "guard acted %",
+    ];
     let mut table = Table::new("experiments", title, &header);
     for o in all {
         let (mean, most) = o.deviation();
@@ -146,11 +174,25 @@ fn spread_table(places: &Spread) -> Table {
 }
 
 fn device_table(all: &[Compared]) -> Table {
-    let header = ["case", "device", "ticks", "velocities (CRC-32C)", "same bits as the virtual device", "farthest from the run in f64, mm"];
+    let header = [
+        "case",
+        "device",
+        "ticks",
+        "velocities (CRC-32C)",
+        "same bits as the virtual device",
+        "farthest from the run in f64, mm",
+    ];
     let mut table = Table::new("devices", "Experiments on a device", &header);
     for c in all {
         let checksum = format!("{:08x}", c.checksum);
-        table.push([c.id.into(), c.device.clone(), c.ticks.to_string(), checksum, yes(c.identical), number(c.apart * 1e3, 3)]);
+        table.push([
+            c.id.into(),
+            c.device.clone(),
+            c.ticks.to_string(),
+            checksum,
+            yes(c.identical),
+            number(c.apart * 1e3, 3),
+        ]);
     }
     table
 }
@@ -244,7 +286,10 @@ fn numbers(all: &[Outcome<'_>], places: &Spread, on_device: &[Compared]) -> Map<
     if let Value::Object(first) = &mut first {
         first.insert("letter".into(), claims("letter"));
         let ends = |all: &[f64]| json!({ "least": all.first(), "median": super::measure::quantile(all, 0.5), "most": all.last(), "places": all.len() });
-        first.insert("spread".into(), json!({ "soft": ends(&places.soft), "intersection": ends(&places.intersection), "failed": places.failed }));
+        first.insert(
+            "spread".into(),
+            json!({ "soft": ends(&places.soft), "intersection": ends(&places.intersection), "failed": places.failed }),
+        );
     }
     let mut json = Map::new();
     json.insert("claims".into(), first);

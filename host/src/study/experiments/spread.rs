@@ -54,9 +54,5 @@ pub fn spread(skill: &Skill, done: &(dyn Fn(usize) + Sync)) -> Result<Spread, Er
     })?;
     let all = || found.iter().flatten();
     let changes = |of: bool| sorted(all().filter(|(single, ..)| *single == of).filter_map(|(.., change)| *change));
-    Ok(Spread {
-        soft: changes(true),
-        intersection: changes(false),
-        failed: all().filter(|(_, well, _)| !well).count(),
-    })
+    Ok(Spread { soft: changes(true), intersection: changes(false), failed: all().filter(|(_, well, _)| !well).count() })
 }

@@ -35,7 +35,8 @@ pub fn study(skill: &Skill, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<Angle>,
     let angles = (-180 / STEP..180 / STEP).map(|i| Some(i * STEP)).chain([None]);
     let all: Vec<(Option<i32>, bool)> = angles.flat_map(|a| [(a, true), (a, false)]).collect();
     parallel::map(&all, done, |(degrees, left)| {
-        let world = World { timeout: 15.0, ..World::new(skill, one(skill, PLACE.0, if *left { PLACE.1 } else { -PLACE.1 })) };
+        let world =
+            World { timeout: 15.0, ..World::new(skill, one(skill, PLACE.0, if *left { PLACE.1 } else { -PLACE.1 })) };
         let driving = Driving { ends_at_contact: true, ..Driving::of(Robot::Exact) };
         let run = |column| {
             let scene = world.scene("angle", column)?;
@@ -52,11 +53,18 @@ pub fn study(skill: &Skill, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<Angle>,
 /// One row an angle.
 pub fn table(all: &[Angle]) -> Table {
     let title = "Speed in the soft layer of one cylinder against the original method by theta_2, percent, and how the run ended";
-    let mut table = Table::new("angles", title, &["theta_2, degrees", "obstacle", "change %", "reached", "entered the core"]);
+    let mut table =
+        Table::new("angles", title, &["theta_2, degrees", "obstacle", "change %", "reached", "entered the core"]);
     for a in all {
         let angle = a.degrees.map_or("with the flow".into(), |d| d.to_string());
         let side = if a.left { "left" } else { "right" };
-        table.push([angle, side.into(), signed(a.change, 1), yes(a.reached), if a.touched { "YES" } else { "no" }.into()]);
+        table.push([
+            angle,
+            side.into(),
+            signed(a.change, 1),
+            yes(a.reached),
+            if a.touched { "YES" } else { "no" }.into(),
+        ]);
     }
     table
 }
@@ -85,7 +93,10 @@ pub fn figure(all: &[Angle]) -> Figure {
                 Series::line("with the flow (default)", Colour::Pliant, vec![(-180.0, level), (180.0, level)]),
                 dashed("theta_2 of the other studies", Colour::Reference, vec![(chosen, lowest), (chosen, highest)]),
                 Series::line("paper to the letter", Colour::Letter, points(false)),
-                Series { mark: Mark::Dots, ..Series::line("never arrived, or entered the core", Colour::Letter, points(true)) },
+                Series {
+                    mark: Mark::Dots,
+                    ..Series::line("never arrived, or entered the core", Colour::Letter, points(true))
+                },
             ],
             x_range: Some((-180.0, 180.0)),
             y_range: Some((lowest, highest)),
