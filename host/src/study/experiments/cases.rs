@@ -1,6 +1,5 @@
 //! The experiments A1 to D1: what the paper's Table I puts on the table, in metres, on the path of its S-shape.
 
-
 use crate::sim::Perception;
 use crate::study::column::{Column, THETA};
 use crate::study::skill::{Skill, Skills};
@@ -79,9 +78,9 @@ fn five(skill: &Skill) -> Vec<Body> {
 
 /// Where D's obstacle waits for the robot, by a share of the path, and from when to when, by the share of the path that the motion without it
 /// would then have done: the top of the S, its middle, its bottom.
-const STATIONS: [(f64, f64, f64); 3] = [(0.24, 0.0, 0.16), (0.52, 0.42, 0.48), (0.82, 0.74, 0.9)];
+const STATIONS: [(f64, f64, f64); 3] = [(0.24, 0.0, 0.3), (0.52, 0.46, 0.6), (0.82, 0.76, 0.9)];
 /// How far to the left of the path each is, m.
-const D_BESIDE: f64 = 0.02;
+const D_BESIDE: f64 = 0.032;
 /// Straight pieces of the way from one to the next.
 const PIECES: u32 = 12;
 
