@@ -29,8 +29,6 @@ impl<S: Scalar> SteeringPolicy<S> {
     }
 }
 
-/// How fast `WithFlow` fades in inside the shell, over Gamma_k: within 0.1 of it.
-const FADING: f64 = 10.0;
 /// What the fixed side adds to the tangential flow, over |f|: enough to leave a saddle point.
 const SIDE: f64 = 0.01;
 /// Tangential flow, over |f|, from which the push has its full length.
@@ -63,21 +61,19 @@ fn others<'a, S: Scalar, const D: usize>(
     soft.iter().filter(move |m| !core::ptr::eq(*m, n))
 }
 
-/// c / Gamma_k^2, m/s
-fn speed_up<S: Scalar, const D: usize>(gain: S, n: &SoftLayer<S, D>) -> S {
-    amplitude(gain, n.gamma_soft)
+/// c / Gamma_k^2, m/s, at most `most`.
+fn speed_up<S: Scalar, const D: usize>(gain: S, n: &SoftLayer<S, D>, most: S) -> S {
+    (gain / (n.gamma_soft * n.gamma_soft)).min(most)
 }
 
-/// c (2 / (Gamma_k,n + Gamma_k,m))^2, m/s
-fn slow_down<S: Scalar, const D: usize>(gain: S, n: &SoftLayer<S, D>, m: &SoftLayer<S, D>) -> S {
-    amplitude(gain, (n.gamma_soft + m.gamma_soft) * S::from_f64(0.5))
+/// c (2 / (Gamma_k,n + Gamma_k,m))^2, m/s, at most `most`.
+fn slow_down<S: Scalar, const D: usize>(gain: S, n: &SoftLayer<S, D>, m: &SoftLayer<S, D>, most: S) -> S {
+    let mean = (n.gamma_soft + m.gamma_soft) * S::from_f64(0.5);
+    (gain / (mean * mean)).min(most)
 }
 
-/// Deep under a very thick layer the square would leave the range of f32; no limit lets through what is cut here.
-fn amplitude<S: Scalar>(gain: S, gamma_soft: S) -> S {
-    let gamma = gamma_soft.max(S::from_f64(1e-9));
-    (gain / (gamma * gamma)).min(S::from_f64(1e6))
-}
+/// No push is longer, m/s: no limit lets through what is cut here.
+const MOST: f64 = 1e6;
 
 fn fixed<S: Scalar, const D: usize>(
     cos: S,
@@ -86,7 +82,7 @@ fn fixed<S: Scalar, const D: usize>(
     mut u: Vector<S, D>,
     soft: &[SoftLayer<S, D>],
 ) -> Vector<S, D> {
-    let alone = soft.len() == 1;
+    let (alone, most) = (soft.len() == 1, S::from_f64(MOST));
     for n in soft {
         let length = norm(&n.arm);
         if !(length > S::zero()) {
@@ -101,10 +97,10 @@ fn fixed<S: Scalar, const D: usize>(
             push = -push;
         }
         if alone {
-            u += push * speed_up(gain, n);
+            u += push * speed_up(gain, n, most);
         } else {
             let tangential = push - n.normal * push.dot(&n.normal);
-            let sum = others(soft, n).fold(S::zero(), |sum, m| sum + slow_down(gain, n, m));
+            let sum = others(soft, n).fold(S::zero(), |sum, m| sum + slow_down(gain, n, m, most));
             u -= tangential * sum;
         }
     }
@@ -123,27 +119,22 @@ fn with_flow<S: Scalar, const D: usize>(
     }
     let mut faster = Vector::<S, D>::zeros();
     let mut slower = Vector::<S, D>::zeros();
+    let largest = largest.min(S::from_f64(MOST));
     for n in soft {
-        let phi = fade(n);
-        let mut alone = phi;
+        let mut alone = n.fade;
         let mut pairs = S::zero();
         for m in others(soft, n) {
-            alone *= S::one() - fade(m);
-            pairs += slow_down(gain, n, m).min(largest) * fade(m);
+            alone *= S::one() - m.fade;
+            pairs += slow_down(gain, n, m, largest) * m.fade;
         }
         let along = along_flow(&u, nominal, n);
-        faster += along * (alone * speed_up(gain, n).min(largest));
-        slower += along * (phi * pairs);
+        faster += along * (alone * speed_up(gain, n, largest));
+        slower += along * (n.fade * pairs);
     }
     // The whole flow is slowed, not its tangents: subtracting one obstacle's tangent could point into another's core.
     let (slowing, speed) = (norm(&slower), norm(&u));
     let share = if slowing > S::zero() { (slowing / speed).min(S::from_f64(SLOWEST)) } else { S::zero() };
     u * (S::one() - share) + faster
-}
-
-/// 0 at the shell, 1 from a thin band on inwards.
-fn fade<S: Scalar, const D: usize>(o: &SoftLayer<S, D>) -> S {
-    ((S::one() - o.gamma_soft) * S::from_f64(FADING)).min(S::one())
 }
 
 /// The direction of the flow in the tangent plane, shorter than one where there is hardly any.

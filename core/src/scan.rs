@@ -89,7 +89,7 @@ impl<S: Scalar, const D: usize> Scan<S, D> {
         if !(gamma < S::FAR) {
             return (gamma, None);
         }
-        let nearest = gamma - one;
+        let nearest = (gamma - one).max(zero);
         let (mut sum, mut normal) = (zero, Vector::<S, D>::zeros());
         for p in &self.points {
             let distance = self.gamma_of(p, x) - one;

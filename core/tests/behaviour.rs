@@ -246,3 +246,26 @@ fn growth_by_ageing_is_seen_before_it_begins() {
         }
     }
 }
+
+#[test]
+fn a_tree_seen_from_its_root_is_gone_round_from_everywhere_to_everywhere() {
+    let chain = [
+        ellipse(0.03, 0.14, 0.12, 0.045, 0.9),
+        ellipse(-0.03, 0.0, 0.1, 0.05, 1.7),
+        ellipse(0.01, -0.14, 0.12, 0.045, 2.3),
+    ];
+    for way in 0..12 {
+        let goal = rotation::planar(0.1 + 0.5 * f64::from(way)) * V::new(0.4, 0.0);
+        for start in 0..40 {
+            let mut c = controller(goal);
+            put(&mut c, &chain);
+            let x = -goal + V::new(0.011 * f64::from(start % 8), 0.02 * f64::from(start) - 0.39);
+            if (0..3).any(|id| gamma(&c, id, &x) <= 1.0) {
+                continue;
+            }
+            let (end, least, flags) = drive(&mut c, x, 15.0);
+            assert!((end - goal).norm() < 0.01, "from {x} to {end}, not {goal}");
+            assert!(least > 1.0 && flags.contains(Status::CLUSTER));
+        }
+    }
+}

@@ -152,7 +152,7 @@ impl Tally {
 }
 
 fn limits<S: Scalar>(r: &mut Random) -> Limits<S> {
-    let speed = if r.random_bool(0.5) { 0.5 } else { 10f64.powf(r.random_range(-3.0..2.0)) };
+    let speed = if r.random_bool(0.5) { 0.5 } else { 10f64.powf(r.random_range(-4.0..2.0)) };
     let acceleration = r.random_bool(0.3).then(|| S::from_f64(10f64.powf(r.random_range(-1.0..3.0))));
     Limits { speed: S::from_f64(speed), acceleration, ..Limits::default() }
 }
@@ -201,9 +201,8 @@ fn campaign<S: Scalar, const D: usize>(seed: u64) {
         let mut controller = controller(r, obstacles, &x);
         let Limits { speed, acceleration, .. } = controller.settings().limits;
         let (speed, eps) = (speed.to_f64(), S::EPSILON.to_f64());
-        // In fixed point squares of speeds have a step too: |u|^2 to one step is |u| to step/(2 |u|), and two squares are rounded.
         let step = S::rounding(S::zero()).to_f64();
-        let fastest = speed * (1.0 + 1e-5) + 8.0 * eps.min(speed) + 8.0 * step + step / speed;
+        let fastest = speed * (1.0 + 1e-5) + 8.0 * eps.min(speed) + 8.0 * step;
         let mut here = Some(state);
         let mut previous = Vector::<f64, D>::zeros();
         for dt in [0.001, 0.001, 0.1].into_iter().cycle().take(15) {

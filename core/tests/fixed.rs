@@ -136,6 +136,17 @@ fn square_roots_are_the_nearest_and_rise() {
 }
 
 #[test]
+fn legs_of_triangles_are_the_nearest_whatever_their_size() {
+    for (a, b) in pairs() {
+        let (hypotenuse, leg) = (i64::from(a).abs() / 2, i64::from(b).abs() / 2);
+        let found = Fixed::other_leg(bits(hypotenuse as i32), bits(leg as i32)).to_bits() as i64;
+        let square = (hypotenuse * hypotenuse - leg * leg).max(0) as i128 * 4;
+        let (low, high) = ((2 * found - 1).max(0) as i128, (2 * found + 1) as i128);
+        assert!(low * low <= square && square <= high * high, "{hypotenuse} {leg}: {found}");
+    }
+}
+
+#[test]
 fn lengths_are_the_nearest_whatever_their_size() {
     for (a, b) in pairs() {
         for c in [0, a ^ b] {

@@ -71,7 +71,8 @@ impl<S: Scalar> Guard<S> {
         table: &Table<S, D, CAP>,
         around: &Surroundings<S, D, CAP>,
     ) -> Solution<S, D> {
-        let here = View { x, at: x, step: speed * dt, approach: self.approach };
+        let skin = skin(x);
+        let here = View { x, at: x, step: speed * dt, approach: self.approach, skin };
         let mut seen = HalfSpaces::new(speed);
         self.look(&here, wanted, speed, dt, table, around, &mut seen);
         let best = seen.nearest(wanted);
@@ -81,7 +82,7 @@ impl<S: Scalar> Guard<S> {
         }
         // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
         let at = x + best.velocity * dt;
-        let there = View { x, at: &at, step: speed * dt * S::from_f64(2.0), approach: S::one() };
+        let there = View { x, at: &at, step: speed * dt * S::from_f64(2.0), approach: S::one(), skin };
         seen.clear(speed);
         self.look(&there, wanted, speed, dt, table, around, &mut seen);
         match seen.allowed(wanted) {
@@ -102,7 +103,7 @@ impl<S: Scalar> Guard<S> {
         around: &Surroundings<S, D, CAP>,
         all: &mut HalfSpaces<S, D>,
     ) {
-        let skin = skin(view.x);
+        let skin = view.skin;
         let rate = S::one() / dt;
         let gone = view.at - view.x;
         let mut keep = |normal: Vector<S, D>, gap: S| {
@@ -124,7 +125,9 @@ impl<S: Scalar> Guard<S> {
                 obstacle.keep_out(&from, &mut keep);
             }
         }
-        table.scan().keep_out(view.at, self.reach(view.x, speed, dt) + view.step, &mut keep);
+        if !table.scan().points().is_empty() {
+            table.scan().keep_out(view.at, self.reach(view.x, speed, dt) + view.step, &mut keep);
+        }
     }
 }
 
@@ -138,6 +141,8 @@ struct View<'a, S: Scalar, const D: usize> {
     step: S,
     /// The share of the distance that may be used up.
     approach: S,
+    /// What surfaces are kept away, m.
+    skin: S,
 }
 
 /// The half-spaces of one tick that any velocity could violate, and the speed up to which those that found no room cannot be.

@@ -69,17 +69,23 @@ pub fn nearest<S: Scalar, const D: usize>(
     speed: S,
 ) -> Solution<S, D> {
     let speed = if speed > S::zero() { speed } else { S::zero() };
-    if let Some(velocity) = allowed(wanted, half_spaces, speed) {
-        return Solution { velocity, changed: velocity != *wanted, violation: S::zero(), feasible: true };
-    }
     let (goal, start) = within_ball(wanted, speed);
-    let half_spaces = with_sides(half_spaces);
+    let solution = |velocity: Vector<S, D>, violation: S, feasible: bool| Solution {
+        velocity,
+        changed: velocity != *wanted,
+        violation: if feasible { S::zero() } else { violation },
+        feasible,
+    };
+    let Some(half_spaces) = violated(&start, half_spaces, speed) else {
+        return solution(start, S::zero(), true);
+    };
+    if let Some(velocity) = within_all(goal, start, half_spaces, speed) {
+        return solution(velocity, S::zero(), true);
+    }
     let velocity = least_violation(goal, start, half_spaces, speed);
     let violation = worst(half_spaces, &velocity);
     // What is missed by no more than rounding is not missed.
-    let feasible = violation <= margin(speed);
-    let violation = if feasible { S::zero() } else { violation };
-    Solution { velocity, changed: velocity != *wanted, violation, feasible }
+    solution(velocity, violation, violation <= margin(speed))
 }
 
 /// The same, and nothing where there is none.
@@ -89,12 +95,30 @@ pub(super) fn allowed<S: Scalar, const D: usize>(
     speed: S,
 ) -> Option<Vector<S, D>> {
     let (goal, start) = within_ball(wanted, speed);
-    let tolerance = rounding(speed);
-    if !half_spaces.iter().any(|h| h.violation(&start) > tolerance) {
-        return Some(start);
+    match violated(&start, half_spaces, speed) {
+        Some(half_spaces) => within_all(goal, start, half_spaces, speed),
+        None => Some(start),
     }
-    let half_spaces = with_sides(half_spaces);
-    let velocity = Programme::nearest(goal, start, speed, S::zero(), tolerance).solve(half_spaces)?;
+}
+
+/// The half-spaces that have a side, if a velocity violates one of them.
+fn violated<'a, S: Scalar, const D: usize>(
+    velocity: &Vector<S, D>,
+    half_spaces: &'a mut [HalfSpace<S, D>],
+    speed: S,
+) -> Option<&'a mut [HalfSpace<S, D>]> {
+    let tolerance = rounding(speed);
+    half_spaces.iter().any(|h| h.violation(velocity) > tolerance).then(|| with_sides(half_spaces))
+}
+
+/// The velocity nearest to the goal that violates none; `start` is the one in the ball.
+fn within_all<S: Scalar, const D: usize>(
+    goal: Vector<S, D>,
+    start: Vector<S, D>,
+    half_spaces: &mut [HalfSpace<S, D>],
+    speed: S,
+) -> Option<Vector<S, D>> {
+    let velocity = Programme::nearest(goal, start, speed, S::zero(), rounding(speed)).solve(half_spaces)?;
     (worst(half_spaces, &velocity) <= margin(speed)).then_some(velocity)
 }
 
@@ -328,7 +352,7 @@ impl<S: Scalar, const D: usize> Programme<S, D> {
         Some(Flat {
             dimension,
             centre: flat.centre + across * shift,
-            radius: ((radius - shift) * (radius + shift)).max(S::zero()).sqrt(),
+            radius: S::other_leg(radius, shift),
             along: flat.along - across * across.transpose(),
         })
     }

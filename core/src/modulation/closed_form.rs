@@ -126,9 +126,9 @@ fn campaign<S: Scalar, const D: usize>(seed: u64) {
             let x = center + (obstacle.surface(&way) - center) * S::from_f64(away);
             let f = Vector::<S, D>::from_fn(|_, _| S::from_f64(r.random_range(-1.0..1.0)));
             let o = obstacle.sample(&x);
-            let mut modulation = Modulation::new(&f);
+            let mut modulation: Modulation<S, D, 1> = Modulation::new(&f);
             modulation.push(&o);
-            let (velocity, refused) = modulation.finish();
+            let (velocity, refused) = modulation.finish(o.gamma, None);
             let (outward, arm) = (exact(&o.outward), exact(&o.arm));
             let cos = outward.dot(&arm) / (outward.norm() * arm.norm());
             if refused {

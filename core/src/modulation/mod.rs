@@ -46,10 +46,8 @@ fn past_one<S: Scalar, const D: usize>(
 /// Obstacles that are computed side by side, each quantity in an array of its own, so that compilers make vector instructions of them where
 /// there are any. No bit depends on it: what is summed up is summed up one by one.
 const LANES: usize = if cfg!(any(target_arch = "x86_64", target_arch = "aarch64")) { 4 } else { 1 };
-/// Groups of them that wait to be taken in together: what is done to them would not fit into registers along with what is done to find them.
-const GROUPS: usize = if LANES == 1 { 8 } else { 1 };
 
-/// Obstacles side by side; see [`Sample`].
+/// Obstacles side by side; see [`Sample`]. A lane without one has the largest Gamma there is.
 #[derive(Clone, Copy, Debug)]
 struct Group<S, const D: usize> {
     gamma: [S; LANES],
@@ -62,14 +60,20 @@ impl<S: Scalar, const D: usize> Group<S, D> {
     /// One obstacle, in the first lane.
     #[inline(always)]
     fn new(sample: &Sample<S, D>) -> Self {
-        let first = |x: S| from_fn(|lane| if lane == 0 { x } else { S::zero() });
-        let each = |v: &Vector<S, D>| from_fn(|d| first(v[d]));
+        let first = |x: S, none: S| from_fn(|lane| if lane == 0 { x } else { none });
+        let each = |v: &Vector<S, D>| from_fn(|d| first(v[d], S::zero()));
         Self {
-            gamma: first(sample.gamma),
+            gamma: first(sample.gamma, S::MAX),
             outward: each(&sample.outward),
             arm: each(&sample.arm),
             surface_velocity: each(&sample.surface_velocity),
         }
+    }
+
+    /// Is there an obstacle in this lane?
+    #[inline(always)]
+    fn has(&self, lane: usize) -> bool {
+        LANES == 1 || self.gamma[lane] < S::FAR
     }
 
     /// The velocities past them, and whether their reference points are usable.
@@ -92,34 +96,28 @@ impl<S: Scalar, const D: usize> Group<S, D> {
 
 /// A velocity bent round obstacles that come one after the other.
 #[derive(Debug)]
-pub(crate) struct Modulation<S: Scalar, const D: usize> {
-    /// The lane for the next obstacle, and those that wait.
-    lane: usize,
-    groups: heapless::Vec<Group<S, D>, GROUPS>,
-    /// Behind them, for compilers clear what lies between two numbers that are zero at one go, room for what waits and all.
+pub(crate) struct Modulation<S: Scalar, const D: usize, const CAP: usize> {
     f: [S; D],
-    /// Were there any before those that wait?
-    others: bool,
-    mean: DirectionalMean<S, D>,
-    /// Was a reference point unusable?
-    unusable: bool,
+    /// The lane for the next obstacle.
+    lane: usize,
+    /// The obstacles so far: how much one weighs is known when all are there, and what is done to them would not fit into registers along with
+    /// what is done to find them.
+    groups: heapless::Vec<Group<S, D>, CAP>,
 }
 
-impl<S: Scalar, const D: usize> Modulation<S, D> {
+impl<S: Scalar, const D: usize, const CAP: usize> Modulation<S, D, CAP> {
     /// Nothing but the nominal velocity f, m/s.
     #[inline(always)]
     pub fn new(f: &Vector<S, D>) -> Self {
-        let (groups, mean) = (heapless::Vec::new(), DirectionalMean::new(f));
-        Self { lane: 0, groups, f: from_fn(|d| f[d]), others: false, mean, unusable: false }
+        Self { f: from_fn(|d| f[d]), lane: 0, groups: heapless::Vec::new() }
     }
 
-    /// One more obstacle.
+    /// One more obstacle, of at most `CAP`.
     #[inline(always)]
     pub fn push(&mut self, sample: &Sample<S, D>) {
-        // Where there is one lane, this is a constant.
+        // Where there is one lane, this is zero.
         let lane = self.lane % LANES;
         if lane == 0 {
-            // There is room, for it is emptied when it is full.
             let _ = self.groups.push(Group::new(sample));
         } else if let Some(group) = self.groups.last_mut() {
             group.gamma[lane] = sample.gamma;
@@ -129,65 +127,40 @@ impl<S: Scalar, const D: usize> Modulation<S, D> {
                 group.surface_velocity[d][lane] = sample.surface_velocity[d];
             }
         }
-        self.lane = (lane + 1) % LANES;
-        if self.lane == 0 && self.groups.is_full() {
-            self.flush();
+        if LANES > 1 {
+            self.lane = lane + 1;
         }
     }
 
-    /// The velocity past all of them, m/s, and whether one of their reference points was unusable.
+    /// The velocity past all of them and past one more, if there is one, m/s; and whether one of their reference points was unusable. `gamma` is
+    /// the least Gamma of those pushed.
     #[inline]
-    pub fn finish(&mut self) -> (Vector<S, D>, bool) {
-        match self.groups.as_slice() {
-            [] if !self.others => (Vector::from_fn(|d, _| self.f[d]), false),
-            [one] if !self.others && self.in_last() == 1 => {
-                let (usable, velocity) = one.past(&self.f);
-                (Vector::from_fn(|d, _| velocity[d][0]), !usable[0])
+    pub fn finish(&self, gamma: S, last: Option<&Sample<S, D>>) -> (Vector<S, D>, bool) {
+        let last = last.map(Group::new);
+        let one = match (self.groups.as_slice(), &last) {
+            ([], None) => return (self.f.into(), false),
+            ([], Some(one)) => one,
+            ([one], None) if self.lane <= 1 => one,
+            (groups, last) => {
+                let gamma = last.as_ref().map_or(gamma, |last| gamma.min(last.gamma[0]));
+                let mut mean = DirectionalMean::new(&self.f, (gamma - S::one()).max(S::zero()));
+                mean.take(groups);
+                if let Some(last) = last {
+                    mean.take(core::slice::from_ref(last));
+                }
+                return (mean.velocity(), mean.unusable);
             }
-            _ => {
-                self.flush();
-                (self.mean.velocity(), self.unusable)
-            }
-        }
-    }
-
-    /// How many obstacles the last group has.
-    fn in_last(&self) -> usize {
-        if self.lane.is_multiple_of(LANES) { LANES } else { self.lane }
-    }
-
-    /// Takes those that wait into the mean.
-    #[inline(never)]
-    fn flush(&mut self) {
-        // Copies stay in registers.
-        let (f, mut mean, mut unusable) = (self.f, self.mean, self.unusable);
-        // Counted, for where there is room for one a compiler then writes no loop.
-        for g in 0..GROUPS {
-            let Some(group) = self.groups.get(g) else { break };
-            let here = if g + 1 < self.groups.len() { LANES } else { self.in_last() };
-            let (usable, velocity) = group.past(&f);
-            let seen = mean.seen(&velocity);
-            for i in 0..here {
-                unusable |= !usable[i];
-                mean.add(group.gamma[i] - S::one(), &seen, i);
-            }
-        }
-        self.groups.clear();
-        self.lane = 0;
-        (self.mean, self.unusable, self.others) = (mean, unusable, true);
+        };
+        let (usable, velocity) = one.past(&self.f);
+        (Vector::from_fn(|d, _| velocity[d][0]), !usable[0])
     }
 }
 
-/// A weight proportional to 1/(Gamma - 1), scaled so that the nearest obstacle's is one: no overflow, and on a surface that
-/// obstacle alone counts.
+/// A weight proportional to 1/(Gamma - 1), scaled so that the nearest obstacle's is one: no overflow, and where the nearest is touched (its Gamma - 1,
+/// cut off at zero, is zero) those that are touched alone count.
+#[inline(always)]
 pub(crate) fn weight<S: Scalar>(distance: S, nearest: S) -> S {
-    if nearest > S::zero() {
-        nearest / distance
-    } else if distance <= S::zero() {
-        S::one()
-    } else {
-        S::zero()
-    }
+    if distance > nearest { nearest / distance } else { S::one() }
 }
 
 /// Sine of the angle to "exactly opposite to f" from which the mean of angles gives way to the plain mean.
@@ -208,11 +181,12 @@ fn opposite<S: Scalar>(ahead: S, aside: S) -> S {
 /// moving obstacles; towards them the mean of angles fades into the plain mean of velocities, so that the velocity is continuous.
 #[derive(Clone, Copy, Debug)]
 struct DirectionalMean<S: Scalar, const D: usize> {
+    f: [S; D],
     /// |f|, m/s.
     nominal: S,
     /// f/|f|; zero where f is.
     forward: Vector<S, D>,
-    /// The least Gamma - 1 so far.
+    /// The least Gamma - 1, or zero if that is below.
     nearest: S,
     sum: S,
     speed: S,
@@ -222,92 +196,82 @@ struct DirectionalMean<S: Scalar, const D: usize> {
     plain: Vector<S, D>,
     /// How much of the plain mean to take.
     fading: S,
-}
-
-/// Some velocities as they look along f.
-struct Seen<S, const D: usize> {
-    velocity: [[S; LANES]; D],
-    /// Along f, m/s.
-    ahead: [S; LANES],
-    /// What is across f; and how much that is, in the plane with a sign, counter-clockwise.
-    across: [[S; LANES]; D],
-    aside: [S; LANES],
-    speed: [S; LANES],
-    /// From f, rad.
-    angle: [S; LANES],
+    /// Was a reference point unusable?
+    unusable: bool,
 }
 
 impl<S: Scalar, const D: usize> DirectionalMean<S, D> {
-    fn new(f: &Vector<S, D>) -> Self {
+    fn new(f: &[S; D], nearest: S) -> Self {
         let (zero, none) = (Vector::zeros(), S::zero());
-        let (nominal, forward) = unit(f);
-        Self { nominal, forward, nearest: S::MAX, sum: none, speed: none, kappa: zero, plain: zero, fading: none }
+        let (nominal, forward) = unit(&(*f).into());
+        Self {
+            f: *f,
+            nominal,
+            forward,
+            nearest,
+            sum: none,
+            speed: none,
+            kappa: zero,
+            plain: zero,
+            fading: none,
+            unusable: false,
+        }
     }
 
-    /// Velocities as seen along f.
-    #[inline(always)]
-    fn seen(&self, velocity: &[[S; LANES]; D]) -> Seen<S, D> {
-        let none = [S::zero(); LANES];
-        let mut seen =
-            Seen { velocity: *velocity, ahead: none, across: [none; D], aside: none, speed: none, angle: none };
-        for i in 0..LANES {
-            let mut ahead = velocity[0][i] * self.forward[0];
-            for d in 1..D {
-                ahead += velocity[d][i] * self.forward[d];
-            }
-            seen.ahead[i] = ahead;
-            if D == 2 {
-                seen.aside[i] = self.forward[0] * velocity[1][i] - self.forward[1] * velocity[0][i];
-            } else {
-                for d in 0..D {
-                    seen.across[d][i] = velocity[d][i] - self.forward[d] * ahead;
-                }
-                let across: [S; D] = from_fn(|d| seen.across[d][i]);
-                seen.aside[i] = S::norm(&across);
-            }
-        }
-        // One by itself may not need it.
-        if LANES > 1 {
+    /// Takes in the velocities past these obstacles.
+    #[inline(never)]
+    fn take(&mut self, groups: &[Group<S, D>]) {
+        // A copy stays in registers.
+        let mut mean = *self;
+        for group in groups {
+            let (usable, velocity) = group.past(&mean.f);
             for i in 0..LANES {
-                (seen.speed[i], seen.angle[i]) = S::polar(seen.ahead[i], seen.aside[i]);
+                mean.unusable |= !usable[i] && group.has(i);
             }
+            mean.add(group, &velocity);
         }
-        seen
+        *self = mean;
     }
 
-    /// Adds the i-th of some velocities, past an obstacle at this Gamma - 1. Weights are relative to the nearest obstacle's so far.
+    /// Adds velocities past some obstacles.
     #[inline(always)]
-    fn add(&mut self, distance: S, seen: &Seen<S, D>, i: usize) {
-        if distance < self.nearest {
-            // The first has nothing to scale.
-            let factor = weight(self.nearest, distance);
-            self.nearest = distance;
-            self.sum *= factor;
-            self.speed *= factor;
-            self.kappa *= factor;
-            self.plain *= factor;
+    fn add(&mut self, group: &Group<S, D>, velocity: &[[S; LANES]; D]) {
+        // As seen along f: ahead, and across it; how much that is, in the plane with a sign, counter-clockwise.
+        let (mut ahead, mut aside) = ([S::zero(); LANES], [S::zero(); LANES]);
+        let mut across = [[S::zero(); LANES]; D];
+        let mut weight = [S::zero(); LANES];
+        for i in 0..LANES {
+            let one: [S; D] = from_fn(|d| velocity[d][i]);
+            ahead[i] = dot(&one, &self.forward.data.0[0]);
+            if D == 2 {
+                aside[i] = self.forward[0] * one[1] - self.forward[1] * one[0];
+            } else {
+                let beside: [S; D] = from_fn(|d| one[d] - self.forward[d] * ahead[i]);
+                aside[i] = S::norm(&beside);
+                for d in 0..D {
+                    across[d][i] = beside[d];
+                }
+            }
+            weight[i] = self::weight(group.gamma[i] - S::one(), self.nearest);
         }
-        let (ahead, aside) = (seen.ahead[i], seen.aside[i]);
-        if ahead < S::zero() {
-            self.fading = self.fading.max(opposite(ahead, aside));
-        }
-        // On a surface it alone counts.
-        if !(self.nearest > S::zero()) && distance > S::zero() {
-            return;
-        }
-        let weight = weight(distance, self.nearest);
-        let (speed, angle) = if LANES == 1 { S::polar(ahead, aside) } else { (seen.speed[i], seen.angle[i]) };
-        self.sum += weight;
-        self.speed += weight * speed;
-        for d in 0..D {
-            self.plain[d] += seen.velocity[d][i] * weight;
-        }
-        if D == 2 {
-            self.kappa[0] += weight * angle;
-        } else if aside > S::zero() {
-            let share = weight * (angle / aside);
+        let (speed, angle) = S::polars(&ahead, &aside);
+        for i in 0..LANES {
+            if ahead[i] < S::zero() {
+                self.fading = self.fading.max(opposite(ahead[i], aside[i]));
+            }
+            let weight = if group.has(i) { weight[i] } else { S::zero() };
+            self.sum += weight;
+            self.speed += weight * speed[i];
             for d in 0..D {
-                self.kappa[d] += seen.across[d][i] * share;
+                self.plain[d] += velocity[d][i] * weight;
+            }
+            if D == 2 {
+                self.kappa[0] += weight * angle[i];
+            } else if aside[i] > S::zero() {
+                let share = weight * (angle[i] / aside[i]);
+                for d in 0..D {
+                    self.kappa[d] += across[d][i] * share;
+                }
             }
         }
     }

@@ -7,9 +7,9 @@ fn sample<const D: usize>(spec: ObstacleSpec<f64, D>, x: &Vector<f64, D>) -> Sam
 }
 
 fn past<const D: usize>(f: &Vector<f64, D>, all: &[Sample<f64, D>]) -> (Vector<f64, D>, bool) {
-    let mut modulation = Modulation::new(f);
+    let mut modulation: Modulation<f64, D, 4> = Modulation::new(f);
     all.iter().for_each(|o| modulation.push(o));
-    modulation.finish()
+    modulation.finish(all.iter().fold(f64::MAX, |least, o| least.min(o.gamma)), None)
 }
 
 proptest! {
@@ -33,10 +33,11 @@ fn at_the_centre_the_robot_keeps_still_and_says_so() {
 #[test]
 fn there_is_no_jump_where_a_velocity_is_opposite_to_f_or_f_vanishes() {
     let mixed = |f: Vector<f64, 3>, other: Vector<f64, 3>| {
-        let mut mean = DirectionalMean::new(&f);
-        for (distance, v) in [(1.0, other), (2.0, Vector::<f64, 3>::new(0.3, 0.1, 0.4))] {
-            let seen = mean.seen(&from_fn(|d| [v[d]; LANES]));
-            mean.add(distance, &seen, 0);
+        let mut mean = DirectionalMean::new(&f.into(), 1.0);
+        for (gamma, v) in [(2.0, other), (3.0, Vector::<f64, 3>::new(0.3, 0.1, 0.4))] {
+            let zero = Vector::zeros();
+            let group = Group::new(&Sample { gamma, outward: zero, arm: zero, surface_velocity: zero });
+            mean.add(&group, &from_fn(|d| from_fn(|lane| if lane == 0 { v[d] } else { 0.0 })));
         }
         mean.velocity()
     };

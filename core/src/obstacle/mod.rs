@@ -23,7 +23,7 @@ pub use spec::{MAX_RATIO, MAX_SPEED, MIN_AXIS, ObstacleError, ObstacleSpec};
 pub(crate) use sample::{Sample, SoftLayer};
 
 use crate::shape::{Body, Place, root};
-use crate::{Scalar, Vector, norm, times, transposed_times};
+use crate::{Matrix, Scalar, Vector, norm, times, transposed_times};
 
 /// A checked obstacle, at its present pose and size.
 ///
@@ -37,6 +37,8 @@ use crate::{Scalar, Vector, norm, times, transposed_times};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle<S: Scalar, const D: usize> {
+    /// diag(hard) Q': u = scaling (x - c).
+    scaling: Matrix<S, D>,
     /// 1/(eta L), with growth and ageing: u = q * hard.
     hard: Vector<S, D>,
     /// 1/(rho L), with growth.
@@ -45,6 +47,9 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     soft_until: S,
     /// From the centre to the reference point, in the world's frame, m: as long as nothing turns it stays.
     offset: Vector<S, D>,
+    /// From there to the reference point of the tree's root, in the world's frame, m; zero where there is none. And is there one?
+    lean: Vector<S, D>,
+    leans: bool,
     /// Is it an ellipsoid with p = 1, and no wall? The usual case goes a short way.
     plain: bool,
     /// Does it move, turn or grow? Does it turn?
@@ -69,6 +74,8 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     /// The reference point in the obstacle's frame, its own or one shared with obstacles it overlaps; and u = q * this when it was chosen.
     local_reference: Vector<S, D>,
     chosen_at: Vector<S, D>,
+    /// `lean` in the obstacle's frame.
+    local_lean: Vector<S, D>,
     /// How much each semi-extent has grown, m.
     grown: S,
     /// How much ageing has added, m, and adds, m/s.
@@ -104,10 +111,13 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let extent = spec.shape.growing_extent();
         let nothing = Vector::zeros();
         let mut obstacle = Self {
+            scaling: Matrix::zeros(),
             hard: nothing,
             soft: nothing,
             soft_until: S::one(),
             offset: nothing,
+            lean: nothing,
+            leans: false,
             plain: !spec.wall && body.is_ellipsoid(),
             moves: false,
             spins: false,
@@ -124,6 +134,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             spec,
             local_reference: nothing,
             chosen_at: nothing,
+            local_lean: nothing,
             grown: S::zero(),
             aged: S::zero(),
             ageing: S::zero(),
@@ -141,7 +152,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// Gamma(x), dimensionless, with safety factors, growth and ageing; the largest number there is at the centre of a wall.
     pub fn gamma(&self, x: &Vector<S, D>) -> S {
-        self.level(&self.local(x).component_mul(&self.hard)).0
+        self.level(&self.scaled(x)).0
     }
 
     /// Gamma_k(x), dimensionless.
@@ -151,7 +162,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// dGamma/dx, 1/m. Near a polygon's corners, where Gamma has a kink, the blend of both sides that the method uses.
     pub fn gradient(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        let u = self.local(x).component_mul(&self.hard);
+        let u = self.scaled(x);
         let (gamma, direction) = self.body.level(&self.spec.shape, &u);
         let along = direction.dot(&u);
         if !(along > S::zero()) {
@@ -191,8 +202,8 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         if self.plain {
             return self.keep_out_of_ellipsoid(from.at, keep);
         }
-        let u = self.local(from.at).component_mul(&self.hard);
-        let wish = transposed_times(&self.spec.rotation, from.wish).component_mul(&self.hard);
+        let u = self.scaled(from.at);
+        let wish = times(&self.scaling, from.wish);
         let Outlook { step, reach, share, .. } = *from;
         let place = Place { u, wish, inverse: &self.hard, wall: self.spec.wall, step, reach, share };
         self.body.keep_out(&self.spec.shape, &place, |normal, slack| {
@@ -207,7 +218,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// The same for an ellipsoid with p = 1: the half-space where the ray from the centre leaves the surface, as for other superellipsoids.
     fn keep_out_of_ellipsoid(&self, x: &Vector<S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
         let one = S::one();
-        let u = self.local(x).component_mul(&self.hard);
+        let u = self.scaled(x);
         let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
         if !(largest > S::zero()) {
             return keep(self.spec.rotation.column(0).into_owned(), -one / self.hard[0]);
@@ -256,6 +267,18 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let largest =
             self.unit.iter().zip(self.hard.iter()).fold(S::zero(), |m, (l, hard)| m.max(S::one() / (*l * *hard)));
         self.spec.shape.outer() * largest
+    }
+
+    /// u = diag(hard) Q' (x - c)
+    #[inline(always)]
+    fn scaled(&self, x: &Vector<S, D>) -> Vector<S, D> {
+        times(&self.scaling, &(x - self.spec.center))
+    }
+
+    /// What follows from the pose and the size of the core.
+    fn pose_changed(&mut self) {
+        self.scaling = Matrix::from_fn(|i, j| self.hard[i] * self.spec.rotation[(j, i)]);
+        self.place_reference();
     }
 
     /// q = Q' (x - c)

@@ -13,7 +13,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.spec.center += self.spec.velocity * dt;
         if self.spins {
             self.spec.rotation = rotation::turned(&self.spec.rotation, &self.spec.spin, dt);
-            self.place_reference();
+            self.pose_changed();
         }
         if self.spec.growth != S::zero() {
             self.grown += self.spec.growth * dt;
@@ -91,7 +91,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             one / if wall { (l - aged * more).max(l * S::from_f64(0.1)) } else { l + aged * more }
         });
         self.slimmest = self.hard.iter().fold(S::zero(), |m, x| m.max(*x)) * self.inner;
-        self.place_reference();
+        self.pose_changed();
     }
 
     /// How the surface moves, and whether anything does.

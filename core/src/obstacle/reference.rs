@@ -1,7 +1,10 @@
 //! Where an obstacle's reference point is.
 
 use super::Obstacle;
-use crate::{Scalar, Vector, is_zero, times};
+use crate::{Scalar, Vector, is_zero, times, transposed_times};
+
+/// The share of n.r that is left where r leads from nearer to the root of a tree.
+const KEPT: f64 = 0.1;
 
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// The reference point in the world's frame, m: its own, or one that it shares with obstacles it overlaps.
@@ -11,13 +14,40 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
 
     /// Below 1 where its reference point may be (not a wall's): Gamma, but of a polygon by what is seen from there.
     pub(crate) fn sight(&self, x: &Vector<S, D>) -> S {
-        self.body.sight(&self.spec.shape, &self.local(x).component_mul(&self.hard)).0
+        self.body.sight(&self.spec.shape, &self.scaled(x)).0
     }
 
     /// The direction in which that grows.
     pub(crate) fn sight_slope(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        let u = self.local(x).component_mul(&self.hard);
-        times(&self.spec.rotation, &self.body.sight(&self.spec.shape, &u).1.component_mul(&self.hard))
+        let u = self.scaled(x);
+        transposed_times(&self.scaling, &self.body.sight(&self.spec.shape, &u).1)
+    }
+
+    /// The reference point of the root of the tree it belongs to (world's frame, m), where r leads from as far as it can; see [`Obstacle::arm`].
+    pub fn hub(&self) -> Option<Vector<S, D>> {
+        self.leans.then(|| self.reference() + self.lean)
+    }
+
+    /// r, in a tree: from a point between the own reference point and the root's, as near to that as leaves n.r the share [`KEPT`] of what it is from
+    /// its own. Where the tree is seen from its root all members have r in common, and no notch is a pocket. `outward` is n, of any length, `own` r
+    /// from its own.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn arm(&self, outward: &Vector<S, D>, own: Vector<S, D>) -> Vector<S, D> {
+        let along = |v: &Vector<S, D>| S::dot(outward.as_slice(), v.as_slice());
+        let (left, falls) = (along(&own) * S::from_f64(1.0 - KEPT), along(&self.lean));
+        if !(left > S::zero()) {
+            return own;
+        }
+        if falls > left { own - self.lean * (left / falls) } else { own - self.lean }
+    }
+
+    /// Leans towards the reference point of a tree's root (world's frame, m), or no longer towards any.
+    pub(crate) fn lean_towards(&mut self, root: Option<&Vector<S, D>>) {
+        let lean = root.map_or_else(Vector::zeros, |root| root - self.reference());
+        self.leans = !is_zero(&lean);
+        self.local_lean = transposed_times(&self.spec.rotation, &lean);
+        self.place_reference();
     }
 
     /// Takes a reference point (world's frame, m) in common with others, or its own again.
@@ -26,11 +56,13 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             Some(x) => (self.local(x), self.hard),
             None => (self.spec.reference, self.unit.map(|unit| S::one() / unit)),
         };
+        (self.leans, self.local_lean) = (false, Vector::zeros());
         self.place_reference();
     }
 
     /// A core that is smaller than it was has its reference point nearer to its centre, for it must not leave it.
     pub(super) fn place_reference(&mut self) {
+        self.lean = if self.leans { times(&self.spec.rotation, &self.local_lean) } else { Vector::zeros() };
         if is_zero(&self.local_reference) {
             self.offset = Vector::zeros();
             return;

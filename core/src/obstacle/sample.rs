@@ -1,7 +1,7 @@
 //! An obstacle as it looks from one point.
 
 use super::Obstacle;
-use crate::{Scalar, Vector, times, unit};
+use crate::{Scalar, Vector, times, transposed_times, unit};
 
 /// What the modulation wants to know of an obstacle.
 #[derive(Clone, Debug)]
@@ -19,7 +19,10 @@ pub(crate) struct Sample<S: Scalar, const D: usize> {
 /// What the adaptive motion wants to know of the soft layer it is in.
 #[derive(Clone, Debug)]
 pub(crate) struct SoftLayer<S: Scalar, const D: usize> {
+    /// Gamma_k, no less than 1e-9: of a very thick layer's, deep inside, the square would leave the range of f32.
     pub gamma_soft: S,
+    /// phi: 0 at the shell, 1 from a thin band on inwards.
+    pub fade: S,
     /// n, the unit normal; of a wall inwards.
     pub normal: Vector<S, D>,
     /// r, from the reference point to x, m.
@@ -30,6 +33,9 @@ pub(crate) struct SoftLayer<S: Scalar, const D: usize> {
     pub leaning: Vector<S, D>,
 }
 
+/// How fast phi grows inside the shell, over Gamma_k: within 0.1 of it.
+const FADING: f64 = 10.0;
+
 /// That axis in the obstacle's frame: one along which robots seldom approach.
 const LEANING: [f64; 3] = [1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0];
 
@@ -37,9 +43,9 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// How it looks from x.
     #[inline(always)]
     pub(crate) fn sample(&self, x: &Vector<S, D>) -> Sample<S, D> {
-        let q = self.local(x);
-        let (gamma, direction) = self.level(&q.component_mul(&self.hard));
-        let shape_normal = times(&self.spec.rotation, &direction.component_mul(&self.hard));
+        let away = x - self.spec.center;
+        let (gamma, direction) = self.level(&times(&self.scaling, &away));
+        let shape_normal = transposed_times(&self.scaling, &direction);
         let mut surface_velocity = Vector::zeros();
         if self.moves {
             surface_velocity = self.surface_velocity(x);
@@ -47,7 +53,10 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
                 surface_velocity += unit(&shape_normal).1 * self.swelling;
             }
         }
-        let arm = x - self.spec.center - self.offset;
+        let mut arm = away - self.offset;
+        if self.leans {
+            arm = self.arm(&shape_normal, arm);
+        }
         Sample { gamma, outward: shape_normal, arm, surface_velocity }
     }
 
@@ -61,9 +70,13 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     #[inline(never)]
     pub(crate) fn soft_layer(&self, x: &Vector<S, D>, sample: Sample<S, D>) -> Option<SoftLayer<S, D>> {
         let gamma_soft = self.gamma_soft(x);
+        if !(sample.gamma > S::one() && gamma_soft <= S::one()) {
+            return None;
+        }
         let normal = unit(&sample.outward).1;
-        (sample.gamma > S::one() && gamma_soft <= S::one()).then(|| SoftLayer {
-            gamma_soft,
+        Some(SoftLayer {
+            gamma_soft: gamma_soft.max(S::from_f64(1e-9)),
+            fade: ((S::one() - gamma_soft) * S::from_f64(FADING)).min(S::one()),
             normal: if self.spec.wall { -normal } else { normal },
             arm: sample.arm,
             leaning: if D == 3 {

@@ -36,7 +36,7 @@ impl<S: Scalar, const N: usize> ArcTangent<S, N> {
     /// by pi/4; mirrored at the diagonal and at both axes.
     #[inline(always)]
     pub fn angle(&self, y: S, x: S) -> S {
-        self.polar(y, x, |_| S::one()).1
+        self.polar(y, x, |squared| squared).1
     }
 
     /// t^2 and atan t for t = over/under up to tan(pi/8).
@@ -47,7 +47,7 @@ impl<S: Scalar, const N: usize> ArcTangent<S, N> {
         (u, t + t * (u * polynomial(&self.series, u)))
     }
 
-    /// The length and angle of (x, y); `root` is sqrt(1 + u) for u up to tan(pi/8)^2.
+    /// The length and angle of (x, y); `root` is the square root, of numbers up to 1 + tan(pi/8)^2.
     #[inline(always)]
     pub fn polar(&self, y: S, x: S, root: impl Fn(S) -> S) -> (S, S) {
         if !BRANCHES {
@@ -61,7 +61,7 @@ impl<S: Scalar, const N: usize> ArcTangent<S, N> {
             return (S::zero(), S::zero());
         }
         let (u, angle) = self.short(across, x);
-        (x * root(u), if y < S::zero() { -angle } else { angle })
+        (x * root(S::one() + u), if y < S::zero() { -angle } else { angle })
     }
 
     /// Apart, so that nothing of it is done before it is known to be needed.
@@ -71,8 +71,40 @@ impl<S: Scalar, const N: usize> ArcTangent<S, N> {
         self.anywhere(y, x, root)
     }
 
+    /// The lengths and angles of several points, with the bits of [`Self::polar`].
+    #[inline(always)]
+    pub fn polars<const M: usize>(&self, y: &[S; M], x: &[S; M], root: impl Fn(S) -> S) -> ([S; M], [S; M]) {
+        let (mut length, mut angle) = ([S::zero(); M], [S::zero(); M]);
+        if BRANCHES {
+            for i in 0..M {
+                (length[i], angle[i]) = self.polar(y[i], x[i], &root);
+            }
+            return (length, angle);
+        }
+        let (mut under, mut squared, mut factor) = (length, length, length);
+        for i in 0..M {
+            let reduced = self.reduced(y[i], x[i]);
+            (under[i], squared[i], factor[i], angle[i]) =
+                (reduced.under, reduced.squared, reduced.factor, reduced.angle);
+        }
+        // Roots apart: with them among the rest, compilers would do all of it one by one.
+        for squared in &mut squared {
+            *squared = root(*squared);
+        }
+        for i in 0..M {
+            length[i] = under[i] * squared[i] * factor[i];
+        }
+        (length, angle)
+    }
+
     #[inline(always)]
     fn anywhere(&self, y: S, x: S, root: impl Fn(S) -> S) -> (S, S) {
+        let Reduced { under, squared, factor, angle } = self.reduced(y, x);
+        (under * root(squared) * factor, angle)
+    }
+
+    #[inline(always)]
+    fn reduced(&self, y: S, x: S) -> Reduced<S> {
         let (zero, half) = (S::zero(), S::from_f64(0.5));
         let (across, along) = (y.abs(), x.abs());
         let upright = across > along;
@@ -96,9 +128,17 @@ impl<S: Scalar, const N: usize> ArcTangent<S, N> {
         let rest = if steep || self.lacking == zero { rest } else { rest + leading * self.lacking };
         let angle = leading + rest;
         // Halves of sum and difference are the point turned by pi/4 and sqrt(2) times as near.
-        let length = under * root(u) * if steep { S::from_f64(core::f64::consts::SQRT_2) } else { S::one() };
-        (length, if y < zero { -angle } else { angle })
+        let factor = if steep { S::from_f64(core::f64::consts::SQRT_2) } else { S::one() };
+        Reduced { under, squared: S::one() + u, factor, angle: if y < zero { -angle } else { angle } }
     }
+}
+
+/// The angle of a point, and what its length is made of: under sqrt(squared) factor.
+struct Reduced<S> {
+    under: S,
+    squared: S,
+    factor: S,
+    angle: S,
 }
 
 /// What sine and cosine need.

@@ -214,6 +214,10 @@ impl Scalar for Fixed {
         };
         Self::from_bits(integer::root(square) as i32)
     }
+    fn other_leg(hypotenuse: Self, leg: Self) -> Self {
+        let square = integer::product((hypotenuse - leg).to_bits(), (hypotenuse + leg).to_bits());
+        Self::from_bits(integer::root(u64::try_from(square).unwrap_or(0)) as i32)
+    }
     fn unit<const D: usize>(v: [Self; D]) -> (Self, [Self; D]) {
         const { assert!(D <= 3, "the square of four may be 2^64") };
         let (length, unit) = integer::unit(v.map(Self::to_bits));

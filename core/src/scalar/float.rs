@@ -126,7 +126,11 @@ macro_rules! scalar {
             }
             #[inline(always)]
             fn polar(x: Self, y: Self) -> (Self, Self) {
-                $angle.polar(y, x, |u| Scalar::sqrt(1.0 + u))
+                $angle.polar(y, x, Scalar::sqrt)
+            }
+            #[inline(always)]
+            fn polars<const N: usize>(x: &[Self; N], y: &[Self; N]) -> ([Self; N], [Self; N]) {
+                $angle.polars(y, x, Scalar::sqrt)
             }
             #[inline(always)]
             fn rounding(size: Self) -> Self {
@@ -135,6 +139,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn norm(components: &[Self]) -> Self {
                 Scalar::sqrt(<Self as Scalar>::dot(components, components))
+            }
+            #[inline(always)]
+            fn other_leg(hypotenuse: Self, leg: Self) -> Self {
+                Scalar::sqrt(Scalar::max((hypotenuse - leg) * (hypotenuse + leg), 0.0))
             }
             #[inline(always)]
             fn dot(a: &[Self], b: &[Self]) -> Self {

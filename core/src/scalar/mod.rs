@@ -74,10 +74,21 @@ pub trait Scalar:
     /// Length and angle (as [`Scalar::atan2`]) of the point (x, y): for little more than the angle. Error of the length: 2e-16 (`f64`), 2e-7 (`f32`) of
     /// it, half a step and 4e-8 of it ([`Fixed`]).
     fn polar(x: Self, y: Self) -> (Self, Self);
+    /// The same of several points, with the same bits.
+    #[inline(always)]
+    fn polars<const N: usize>(x: &[Self; N], y: &[Self; N]) -> ([Self; N], [Self; N]) {
+        let (mut length, mut angle) = ([Self::zero(); N], [Self::zero(); N]);
+        for (i, (x, y)) in x.iter().zip(y).enumerate() {
+            (length[i], angle[i]) = Self::polar(*x, *y);
+        }
+        (length, angle)
+    }
     /// A bound on the rounding error of one product of terms of this size.
     fn rounding(size: Self) -> Self;
     /// Euclidean length, for components whose squares need not fit in fixed point.
     fn norm(components: &[Self]) -> Self;
+    /// sqrt(hypotenuse^2 - leg^2), zero where that is no number: the other leg, for lengths whose squares need not fit, or have no digits, in fixed point.
+    fn other_leg(hypotenuse: Self, leg: Self) -> Self;
     /// The length of a vector of up to three components, and the vector over it; zero where that is no number. Error of the length in fixed point: half a
     /// step, and 1.5e-8 of it.
     #[inline(always)]

@@ -2,8 +2,8 @@
 //!
 //! Huber, Billard & Slotine (2019) and Huber, Slotine & Billard (2022): obstacles that have a point in common take it as their reference
 //! point, and the flow goes round their union. Where there is none the cluster is taken as a tree (each overlaps the next, but not all of them):
-//! each one's reference point lies towards its parent's, so that on it the flow leads away from the branch; the root keeps its own. That
-//! promises nothing, and the status says so.
+//! each one's reference point lies towards its parent's, so that on it the flow leads away from the branch; the root keeps its own, and r of all others leads
+//! from as near to that as they can be seen from. Where the tree is not seen from there that promises nothing, and the status says so.
 //!
 //! A polygon is to be seen whole from its reference point; it takes no other, and where that leaves none keeps its own.
 
@@ -106,6 +106,7 @@ impl<const CAP: usize> Clusters<CAP> {
         self.unshared |= cluster;
         let Some(root) = self.root(cluster, entries) else { return };
         refer(entries, root, None);
+        let hub = entries.get(root).filter(|e| !e.obstacle.spec().wall).map(|e| e.obstacle.reference());
         let (mut reached, mut front) = (1u64 << root, 1u64 << root);
         while front != 0 {
             let mut next = 0;
@@ -116,6 +117,9 @@ impl<const CAP: usize> Clusters<CAP> {
                 for child in bits(self.neighbours.get(parent).copied().unwrap_or_default() & !reached) {
                     let point = towards_parent(entries, parent, child);
                     refer(entries, child, point.as_ref());
+                    if let Some(entry) = entries.get_mut(child) {
+                        entry.obstacle.lean_towards(hub.as_ref());
+                    }
                     (reached, next) = (reached | 1 << child, next | 1 << child);
                 }
             }

@@ -207,8 +207,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         around: &mut Surroundings<S, D, CAP>,
     ) {
         // Here rather than in there, where each obstacle would load and store it.
-        let mut modulation = Modulation::new(&around.velocity);
-        let (mut gamma, mut nearest) = (around.gamma, None);
+        let mut modulation: Modulation<S, D, CAP> = Modulation::new(&around.velocity);
+        let (mut gamma, mut nearest) = (S::MAX, None);
         for (index, entry) in self.entries.iter().enumerate() {
             let sample = entry.obstacle.sample(x);
             if let Some((reach, dt)) = reach {
@@ -235,17 +235,16 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             }
             modulation.push(&sample);
         }
+        let (of_obstacles, mut points) = (gamma, None);
         if !self.scan.points().is_empty() {
             let (least, sample) = self.scan.sample(x);
-            if let Some(sample) = &sample {
-                modulation.push(sample);
-            }
+            points = sample;
             if least < gamma {
                 (gamma, nearest) = (least, None);
             }
         }
         (around.gamma, around.nearest) = (gamma, nearest.map(Entry::id));
-        (around.velocity, around.unusable) = modulation.finish();
+        (around.velocity, around.unusable) = modulation.finish(of_obstacles, points.as_ref());
     }
 
     /// The obstacle at this place in the table.

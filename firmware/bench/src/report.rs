@@ -9,6 +9,9 @@ use pliant_core::scalar::Fixed;
 /// Most ticks of a case.
 pub const MAX_TICKS: usize = 20_000;
 
+/// Most upserts of a case: some take as long as hundreds of ticks.
+const MAX_UPSERTS: u32 = 1_000;
+
 /// What to print, as it is asked for by words: `ticks=N` (of each case; 0 for none), `parts` (each part of a tick as well), `bits=N` (a digest
 /// of N ticks; 0 for none), `blocks` (and of each thousand), `obstacles=N`, `dimension=N`, `points=N`, `scene=NAME` (only such cases).
 ///
@@ -97,6 +100,7 @@ impl<C: Clock, W: Write> Bench<'_, C, W> {
         self.cases::<f32, 2, 64>(64, K)?;
         self.cases::<f32, 3, 64>(0, K)?;
         self.cases::<f32, 3, 64>(16, K)?;
+        self.upserts::<f32, 2, 64>()?;
         self.bits::<f32>()
     }
 
@@ -139,6 +143,31 @@ impl<C: Clock, W: Write> Bench<'_, C, W> {
         let timing::Figures { median, p99, worst, worst_at, digest } = figures;
         write!(self.out, r#""median":{median},"p99":{p99},"worst":{worst},"worst_at":{worst_at},"#)?;
         writeln!(self.out, r#""digest":"{digest:016x}"}}"#)
+    }
+
+    /// Obstacles put into a full table.
+    fn upserts<S: Number, const D: usize, const CAP: usize>(&mut self) -> fmt::Result {
+        let Wanted { ticks, obstacles, dimension, points, scene, .. } = self.wanted;
+        if ticks == 0
+            || obstacles.is_some_and(|n| usize::from(n) != CAP)
+            || dimension.is_some_and(|d| d != D)
+            || points.is_some_and(|p| p != 0)
+        {
+            return Ok(());
+        }
+        let upserts = ticks.min(MAX_UPSERTS);
+        for kind in Kind::ALL.into_iter().map(Some).chain([None]) {
+            if scene.is_some() && scene != kind {
+                continue;
+            }
+            let figures = timing::measure_upserts::<S, D, CAP>(kind, upserts, &mut self.clock, self.counts);
+            let timing::Figures { median, p99, worst, worst_at, .. } = figures;
+            let name = kind.map_or("groups", Kind::name);
+            write!(self.out, r#"{{"part":"upsert","room":{CAP},"scene":"{name}","dimension":{D},"#)?;
+            write!(self.out, r#""scalar":"{}","core":"{}","upserts":{upserts},"#, S::NAME, self.core)?;
+            writeln!(self.out, r#""median":{median},"p99":{p99},"worst":{worst},"worst_at":{worst_at}}}"#)?;
+        }
+        Ok(())
     }
 
     fn bits<S: Number>(&mut self) -> fmt::Result {

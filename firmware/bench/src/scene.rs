@@ -184,6 +184,32 @@ pub fn obstacle<S: Number, const D: usize>(kind: Kind, random: &mut Random) -> O
     checked(spec)
 }
 
+/// A full table that is hard to change: a [`visitor`] as obstacle 0, and all others ellipsoids in groups of eight that overlap.
+pub fn groups<S: Number, const D: usize, const CAP: usize>(random: &mut Random) -> Controller<S, D, CAP> {
+    let mut controller = Controller::new(motion(1, random), Settings::default());
+    let _ = controller.upsert(0, visitor(false), S::zero());
+    for id in 1..CAP as u16 {
+        // A grid of places half a metre apart.
+        let group = i32::from((id - 1) / 8);
+        let place = [group % 3 - 1, group / 3 - 1, 0];
+        let center = Vector::from_fn(|i, _| S::units(place.get(i).copied().unwrap_or_default() * ONE / 2));
+        let spec = ObstacleSpec {
+            center: center + random.vector::<S, D>(-20, 20),
+            rotation: random.rotation(),
+            shape: Shape::ellipsoid(random.vector(60, 90)),
+            ..ObstacleSpec::default()
+        };
+        let _ = controller.upsert(id, checked(spec), S::zero());
+    }
+    controller
+}
+
+/// An obstacle that overlaps all [`groups`], or none of them.
+pub fn visitor<S: Number, const D: usize>(there: bool) -> Obstacle<S, D> {
+    let center = if there { Vector::zeros() } else { Vector::from_element(S::units(20 * ONE)) };
+    checked(ObstacleSpec { center, shape: Shape::ellipsoid(Vector::from_element(S::one())), ..ObstacleSpec::default() })
+}
+
 /// Where all surfaces of a [`Kind::Crowd`] meet, m.
 pub fn meeting<S: Number, const D: usize>() -> Vector<S, D> {
     Vector::from_fn(|i, _| S::units(ONE / 4 - ONE / 8 * i as i32))
@@ -306,6 +332,27 @@ mod tests {
             assert!(matches!(motion::<f32, 2>(8, &mut random), Motion::Lpv(m) if m.components().len() == 8));
             assert!(matches!(motion::<Fixed, 3>(4, &mut random), Motion::Lpv(_)));
         }
+    }
+
+    #[test]
+    fn a_visitor_makes_one_cluster_of_all_groups() {
+        let mut controller = groups::<f32, 2, 64>(&mut Random::new(7));
+        let references = |c: &Controller<f32, 2, 64>| {
+            let mut all: heapless::Vec<Vector<f32, 2>, 64> = heapless::Vec::new();
+            for entry in c.table().iter().filter(|e| e.id() > 0) {
+                let reference = entry.obstacle().reference();
+                if !all.iter().any(|other| (other - reference).norm() < 1e-4) {
+                    all.push(reference).unwrap();
+                }
+            }
+            all.len()
+        };
+        // One for each group of eight.
+        assert_eq!(references(&controller), 8);
+        controller.upsert(0, visitor(true), 0.0).unwrap();
+        assert!(references(&controller) > 8);
+        controller.upsert(0, visitor(false), 0.0).unwrap();
+        assert_eq!(references(&controller), 8);
     }
 
     #[test]

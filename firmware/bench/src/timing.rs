@@ -2,8 +2,8 @@
 
 use core::hint::black_box;
 
-use crate::{Digest, Kind, Number, Plan, TICK_UNITS, stream};
-use pliant_core::{Command, Controller, RobotState, Settings};
+use crate::{Digest, Kind, Number, Plan, Random, TICK_UNITS, scene, stream};
+use pliant_core::{Command, Controller, Obstacle, RobotState, Settings};
 
 /// Something that counts up: instructions on an emulated board, nanoseconds on a desk.
 pub trait Clock {
@@ -115,6 +115,42 @@ pub fn measure<S: Number, const D: usize, const CAP: usize>(
     Figures { median: at(500), p99: at(990), digest: digest.value(), ..figures }
 }
 
+/// Measures obstacles that are put into a full table of `CAP`, each in the place of another; which cores overlap is found then.
+///
+/// In a scene of a kind; or, without one, groups of eight overlapping ellipsoids, the largest whose common point is searched for, and one obstacle that
+/// comes to overlap them all and goes again, whereby all are looked at anew.
+pub fn measure_upserts<S: Number, const D: usize, const CAP: usize>(
+    kind: Option<Kind>,
+    upserts: u32,
+    clock: &mut impl Clock,
+    counts: &mut [u32],
+) -> Figures {
+    let mut random = Random::new(2000);
+    let obstacles = CAP as u16;
+    let mut controller: Controller<S, D, CAP> = match kind {
+        Some(kind) => scene::controller(&Plan { seed: 2000, obstacles, components: 1, points: 0, kind }, &mut random),
+        None => scene::groups(&mut random),
+    };
+    let mut figures = Figures::default();
+    let counts = counts.get_mut(..upserts as usize).unwrap_or_default();
+    for (done, place) in counts.iter_mut().enumerate() {
+        let (id, obstacle) = match kind {
+            Some(kind) => (random.below(u32::from(obstacles)) as u16, scene::obstacle(kind, &mut random)),
+            None => (0, scene::visitor(done % 2 == 0)),
+        };
+        let start = clock.now();
+        upsert(&mut controller, id, obstacle);
+        let end = clock.now();
+        *place = clock.between(start, end);
+        if *place > figures.worst {
+            (figures.worst, figures.worst_at) = (*place, done as u32);
+        }
+    }
+    counts.sort_unstable();
+    let at = |thousandths: usize| counts.get(counts.len() * thousandths / 1000).copied().unwrap_or(figures.worst);
+    Figures { median: at(500), p99: at(990), ..figures }
+}
+
 /// What the part takes, and the command of a whole tick.
 fn timed<S: Number, const D: usize, const CAP: usize>(
     part: Part,
@@ -150,6 +186,15 @@ fn tick<S: Number, const D: usize, const CAP: usize>(
     state: &RobotState<S, D>,
 ) -> Command<S, D> {
     controller.tick(state, S::units(TICK_UNITS))
+}
+
+#[inline(never)]
+fn upsert<S: Number, const D: usize, const CAP: usize>(
+    controller: &mut Controller<S, D, CAP>,
+    id: u16,
+    obstacle: Obstacle<S, D>,
+) {
+    let _ = controller.upsert(id, obstacle, S::zero());
 }
 
 #[inline(never)]

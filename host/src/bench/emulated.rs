@@ -69,6 +69,29 @@ pub struct Scene {
     pub worst: u32,
 }
 
+/// Instructions that it takes to put an obstacle into a full table; which cores overlap is found then.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Upserts {
+    /// Obstacles that the table has room for.
+    pub room: usize,
+    /// See `pliant_bench::Kind`; `groups` are eights that overlap, with one obstacle that comes to overlap them all and goes again.
+    pub scene: String,
+    /// Of the workspace.
+    pub dimension: usize,
+    /// The number type.
+    pub scalar: String,
+    /// The processor.
+    pub core: String,
+    /// Upserts measured.
+    pub upserts: u32,
+    /// Half of them took no more.
+    pub median: u32,
+    /// 99 % took no more.
+    pub p99: u32,
+    /// The longest.
+    pub worst: u32,
+}
+
 /// A digest of commands, from a board and from here.
 #[derive(Clone, Debug, Serialize)]
 pub struct Bits {
@@ -95,6 +118,7 @@ impl Bits {
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Line {
+    Upserts(Upserts),
     Case {
         obstacles: u16,
         dimension: usize,
@@ -117,6 +141,8 @@ enum Line {
 pub struct Report {
     /// A line for each number of obstacles.
     pub ticks: Vec<Ticks>,
+    /// A line for each scene.
+    pub upserts: Vec<Upserts>,
     /// A line for each number type.
     pub bits: Vec<Bits>,
 }
@@ -143,6 +169,10 @@ pub fn measure(wanted: Wanted, mut each: impl FnMut(&str)) -> Result<Report, Bri
 impl Report {
     fn take(&mut self, line: &str, each: &mut impl FnMut(&str)) {
         match serde_json::from_str(line) {
+            Ok(Line::Upserts(upserts)) => {
+                each(&format!("{}, an upsert into {}, {}", upserts.core, upserts.room, upserts.scene));
+                self.upserts.push(upserts);
+            }
             Ok(Line::Case { obstacles, dimension, k, scalar, core, scene }) => {
                 each(&format!("{core}, {obstacles} obstacles in {dimension}-D, {}", scene.scene));
                 let same = |t: &Ticks| (t.obstacles, t.dimension, t.k) == (obstacles, dimension, k) && t.core == core;
@@ -197,6 +227,9 @@ mod tests {
         }
         let [ticks] = report.ticks.as_slice() else { panic!("{report:?}") };
         assert_eq!((ticks.instructions_per_tick, ticks.worst, ticks.scenes.len()), (5, 9, 3));
+        let line = r#"{"part":"upsert","room":64,"scene":"groups","dimension":2,"scalar":"f32","core":"M4","upserts":5,"median":1,"p99":2,"worst":3,"worst_at":4}"#;
+        report.take(line, &mut |_| ());
+        assert_eq!((report.upserts.len(), report.upserts[0].worst, report.ticks.len()), (1, 3, 1));
         report.take("something else", &mut |_| ());
         let digest = bits::run::<Fixed>(1000, |_, _| ());
         report.take(&format!(r#"{{"bits":1000,"scalar":"fixed","core":"M0","digest":"{digest:016x}"}}"#), &mut |_| ());

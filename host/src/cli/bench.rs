@@ -4,7 +4,7 @@ use clap::{ValueEnum, value_parser};
 use serde_json::json;
 
 use super::{Finished, print_json, progress};
-use crate::bench::emulated::{Report, Wanted, measure};
+use crate::bench::emulated::{Report, Upserts, Wanted, measure};
 use crate::bench::here::{Velocity, velocities};
 use crate::error::Outcome;
 
@@ -97,6 +97,23 @@ fn print_report(report: &Report) {
                 s.worst
             );
         }
+    }
+    if !report.upserts.is_empty() {
+        say!("\nInstructions to put an obstacle into a full table\n");
+        say!(
+            "  {:10}  {:6}  {:>3}  {:>4}  {:10}  {:>8}  {:>8}  {:>8}",
+            "core",
+            "scalar",
+            "dim",
+            "room",
+            "scene",
+            "median",
+            "99 %",
+            "longest"
+        );
+    }
+    for Upserts { core, scalar, dimension, room, scene, median, p99, worst, .. } in &report.upserts {
+        say!("  {core:10}  {scalar:6}  {dimension:>3}  {room:>4}  {scene:10}  {median:>8}  {p99:>8}  {worst:>8}");
     }
     for b in &report.bits {
         let (same, ticks) = (if b.equal() { "the same bits as" } else { "OTHER BITS than" }, b.ticks);

@@ -24,6 +24,7 @@ pub(super) struct Body {
     /// e of the shape as given.
     pub(super) extents: DVector<f64>,
     reference: DVector<f64>,
+    hub: Option<DVector<f64>>,
     velocity: DVector<f64>,
     spin: OracleSpin,
     /// b, of the surface towards free space.
@@ -94,6 +95,7 @@ impl Body {
             soft,
             extents,
             reference,
+            hub: obstacle.hub.as_ref().map(|hub| vector(hub, dimension, "hub")).transpose()?,
             velocity: vector(&obstacle.velocity, dimension, "velocity")?,
             spin: obstacle.spin,
             swelling: speed + obstacle.ageing * fastest,
@@ -187,9 +189,26 @@ impl Body {
         if self.wall { -out } else { out }
     }
 
-    /// r, from the reference point to x.
+    /// r, from the reference point to x; in a tree from as near to its root's as leaves n.r a tenth of that.
     pub(super) fn radius(&self, x: &DVector<f64>) -> DVector<f64> {
-        x - self.world(&self.reference)
+        let own = self.reference();
+        let Some(hub) = self.hub() else {
+            return x - own;
+        };
+        let normal = self.normal(x);
+        let seen = |from: &DVector<f64>| normal.dot(&(x - from));
+        let (least, far) = (0.1 * seen(&own), seen(&hub));
+        if least <= 0.0 {
+            return x - own;
+        }
+        // What is seen falls evenly from `own` to `hub`.
+        let share = if far >= least { 1.0 } else { (seen(&own) - least) / (seen(&own) - far) };
+        x - (&own + (hub - &own) * share)
+    }
+
+    /// The reference point of its tree's root in the world.
+    pub(super) fn hub(&self) -> Option<DVector<f64>> {
+        self.hub.as_ref().map(|hub| self.world(hub))
     }
 
     /// The reference point in the world.

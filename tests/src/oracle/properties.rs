@@ -106,6 +106,7 @@ fn lifted(scene: &OracleScene) -> OracleScene {
             soft_ratio: with_zero(&flat.soft_ratio, 1.4),
             margin: with_zero(&flat.margin, 1.1),
             reference: with_zero(&flat.reference, 0.0),
+            hub: flat.hub.as_ref().map(|hub| with_zero(hub, 0.0)),
             velocity: with_zero(&flat.velocity, 0.0),
             ..flat.clone()
         })

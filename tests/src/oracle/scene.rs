@@ -136,6 +136,8 @@ pub struct OracleObstacle {
     pub margin: Vec<f64>,
     /// r0 in the obstacle's frame, m.
     pub reference: Vec<f64>,
+    /// The reference point of the root of the tree it belongs to, in the obstacle's frame, m.
+    pub hub: Option<Vec<f64>>,
     /// v, m/s.
     pub velocity: Vec<f64>,
     /// w.
@@ -281,6 +283,7 @@ impl OracleObstacle {
             soft_ratio: vec![1.0; d],
             margin: vec![1.0; d],
             reference: vec![0.0; d],
+            hub: None,
             velocity: vec![0.0; d],
             spin: OracleSpin::Planar(0.0),
             grown: 0.0,

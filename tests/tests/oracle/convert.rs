@@ -8,7 +8,7 @@ use pliant_core::{
 use pliant_tests::oracle::random_scene::RandomAgeing;
 use pliant_tests::oracle::{
     OracleMethod, OracleMotion, OracleObstacle, OracleRotation, OracleScene, OracleShape, OracleSpin, OracleSteering,
-    refer,
+    lean, refer,
 };
 
 pub fn vector<const D: usize>(v: &[f64]) -> Vector<f64, D> {
@@ -118,6 +118,7 @@ pub fn as_used<const D: usize>(scene: &OracleScene, controller: &Controller<f64,
     let mut used = scene.clone();
     for entry in controller.table().iter() {
         refer(&mut used, usize::from(entry.id()), entry.obstacle().reference().as_slice()).unwrap();
+        lean(&mut used, usize::from(entry.id()), entry.obstacle().hub().as_ref().map(|hub| hub.as_slice())).unwrap();
     }
     used
 }

@@ -99,8 +99,18 @@ impl OracleCluster {
                 complaints.push(format!("root {root} has not kept its reference point"));
                 continue;
             }
+            let hub = self.wall.is_none().then(|| bodies[root].reference());
             let wrong = self.parents(root).into_iter().find_map(|(child, parent)| {
                 let parent = parent?;
+                let leans = match (&hub, bodies[child].hub()) {
+                    (Some(hub), Some(seen)) => length(&(hub - seen)) < 1e-9 * (1.0 + length(hub)),
+                    // A child whose own is there already has nowhere to lean to.
+                    (Some(hub), None) => length(&(hub - bodies[child].reference())) < 1e-9,
+                    (None, seen) => seen.is_none(),
+                };
+                if !leans {
+                    return Some(format!("{child} does not lean towards root {root}"));
+                }
                 let with = |other: usize| {
                     child::check(&bodies[child], &before[child], &bodies[other], &before[other].reference())
                 };
@@ -229,6 +239,18 @@ pub fn refer(scene: &mut OracleScene, n: usize, place: &[f64]) -> Result<(), Ora
         let local = body.local(&place).zip_map(&body.hard, |r, scale| r / scale.min(1.0));
         scene.obstacles[n].reference = local.as_slice().to_vec();
     }
+    Ok(())
+}
+
+/// Puts the hub of an obstacle, its tree's root's reference point, to a place in the world.
+///
+/// # Errors
+/// Where the scene is not valid, or has no such obstacle.
+pub fn lean(scene: &mut OracleScene, n: usize, place: Option<&[f64]>) -> Result<(), OracleError> {
+    let place = place.map(|place| vector(place, scene.dimension, "hub")).transpose()?;
+    let bodies = bodies(scene)?;
+    let body = bodies.get(n).ok_or(OracleError::Value("number of an obstacle"))?;
+    scene.obstacles[n].hub = place.map(|place| body.local(&place).as_slice().to_vec());
     Ok(())
 }
 

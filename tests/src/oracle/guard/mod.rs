@@ -2,6 +2,7 @@
 //! force, and whether a step ends in a core.
 
 mod nearest;
+mod polygon;
 
 use nalgebra::DVector;
 
@@ -39,8 +40,7 @@ pub struct HalfSpaces {
     pub all: Vec<HalfSpace>,
     /// False where the page does not determine one: at the centre of an obstacle, in a wall where a step is longer than its rounding or what is left after the bend, and of a moving obstacle as far away as counts.
     pub complete: bool,
-    /// False where there is a polygon: behind which of the sides of its pieces is kept is free. Those given are one such choice,
-    /// with a triangle for each edge as pieces.
+    /// False where rounding decides behind which line a piece of a polygon is kept.
     pub determined: bool,
 }
 
@@ -86,16 +86,17 @@ pub fn violations(next: &OracleScene, x: &[f64], u: &[f64], dt: f64) -> Result<V
     Ok(gammas.iter().enumerate().filter_map(inside).collect())
 }
 
-/// The half-spaces of the scene at the next sample, for a robot that is at x now and moves for `dt`.
+/// The half-spaces of the scene at the next sample, for a robot that is at x now, moves for `dt` and wants to go at `wanted`.
 ///
 /// # Errors
 /// Where an input has the wrong dimension or is not a permitted value.
-pub fn half_spaces(next: &OracleScene, x: &[f64], dt: f64) -> Result<HalfSpaces, OracleError> {
+pub fn half_spaces(next: &OracleScene, x: &[f64], wanted: &[f64], dt: f64) -> Result<HalfSpaces, OracleError> {
     let d = next.dimension;
     let x = vector(x, d, "position")?;
     let step = next.limits.speed * dt;
+    let asked = vector(wanted, d, "velocity")? * (dt / next.guard.unwrap_or(1.0));
     let mut all = Vec::new();
-    let mut complete = true;
+    let (mut complete, mut determined) = (true, true);
     let mut push = |obstacle, normal: &DVector<f64>, gap| {
         all.push(HalfSpace { obstacle, normal: normal.as_slice().to_vec(), gap });
     };
@@ -113,13 +114,9 @@ pub fn half_spaces(next: &OracleScene, x: &[f64], dt: f64) -> Result<HalfSpaces,
         }
         match &body.shape {
             Shape::Star(_) => {
-                for piece in pieces(body) {
-                    // Each side's bound holds inside; the one that is missed most keeps the robot off.
-                    let beyond = |side: &Bound| side.least - side.normal.dot(&x);
-                    let side = piece.iter().max_by(|a, b| beyond(a).total_cmp(&beyond(b)));
-                    if let Some(side) = side {
-                        push(n, &-&side.normal, beyond(side));
-                    }
+                for side in polygon::sides(body, &x, &asked) {
+                    determined &= side.clear;
+                    push(n, &side.normal, side.gap);
                 }
             }
             Shape::Ellipsoid { axes, exponent } => {
@@ -178,7 +175,6 @@ pub fn half_spaces(next: &OracleScene, x: &[f64], dt: f64) -> Result<HalfSpaces,
             }
         }
     }
-    let determined = !bodies.iter().any(|body| matches!(body.shape, Shape::Star(_)));
     Ok(HalfSpaces { all, complete, determined })
 }
 

@@ -1,5 +1,7 @@
 //! Polygons in the plane that are star-shaped about their origin: not convex, but every ray from the origin leaves them once.
 
+mod pieces;
+
 use super::{Place, Surface};
 use crate::{ObstacleError, RANGE, Scalar, Vector};
 
@@ -29,10 +31,11 @@ pub struct Polygon<S> {
     vertices: heapless::Vec<[S; 2], MAX_VERTICES>,
 }
 
-/// An edge from `from` to `to`; `normal.z = 1` along it.
+/// An edge from `from` to `to`, which is `along`; `normal.z = 1` along it.
 struct Edge<S> {
     from: [S; 2],
     to: [S; 2],
+    along: [S; 2],
     normal: [S; 2],
 }
 
@@ -43,7 +46,7 @@ impl<S: Scalar> Edge<S> {
         let along = sub(to, from);
         // |normal| = 1/distance of the edge's line.
         let normal = [along[1] / double_area, -along[0] / double_area];
-        (double_area > S::zero()).then_some(Self { from, to, normal })
+        (double_area > S::zero()).then_some(Self { from, to, along, normal })
     }
 
     /// Its share in the normal of a neighbour, at this share of that one's length from the corner between them; `opposite` is the neighbour's
@@ -196,134 +199,8 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
         (gauge * gauge, vector(normal))
     }
 
-    /// A polygon is cut at its notches into convex pieces about the origin (and where one would go half round), what is outside of it into sectors
-    /// beyond the edges, between the rays through their ends. Off each of these, behind any of its sides, keeps off the whole, corners
-    /// and notches included.
-    fn keep_out(&self, at: &Place<'_, S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
-        let here = Here { u: plane(&at.u), wish: plane(&at.wish), share: at.share };
-        let fastest = at.inverse.iter().fold(S::zero(), |m, i| m.max(*i));
-        let mut off = |piece: &Piece<S>| {
-            if let Some(side) = &piece.best
-                && side.gap < at.reach * fastest * size(side.normal)
-            {
-                keep(vector::<S, D>(side.normal).component_mul(at.inverse), side.gap);
-            }
-        };
-        if at.wall {
-            for edge in self.edges() {
-                let mut piece = Piece::new(edge.from);
-                piece.edge(&edge, &here, -S::one());
-                piece.close(edge.to, &here);
-                off(&piece);
-            }
-            return;
-        }
-        let mut edges: heapless::Vec<Edge<S>, MAX_VERTICES> = heapless::Vec::new();
-        for edge in self.edges() {
-            // Cannot be full, and `collect` would panic if it were.
-            let _ = edges.push(edge);
-        }
-        let mut before = edges.last();
-        let notch = edges.iter().position(|edge| before.replace(edge).is_some_and(|before| is_notch(before, edge)));
-        let Some((rest, first)) = notch.and_then(|notch| edges.split_at_checked(notch)) else {
-            // Convex: one piece, and all its sides are edges.
-            let mut whole = Piece::new([S::zero(); 2]);
-            edges.iter().for_each(|edge| whole.edge(edge, &here, S::one()));
-            return off(&whole);
-        };
-        // From the first notch on, once round.
-        let mut piece: Option<(Piece<S>, &Edge<S>)> = None;
-        for edge in first.iter().chain(rest) {
-            let open = match piece.take() {
-                Some((open, last)) if !is_notch(last, edge) && cross(open.from, edge.to) > S::zero() => Some(open),
-                Some((mut done, last)) => {
-                    done.close(last.to, &here);
-                    off(&done);
-                    None
-                }
-                None => None,
-            };
-            let mut open = open.unwrap_or_else(|| Piece::new(edge.from));
-            open.edge(edge, &here, S::one());
-            piece = Some((open, edge));
-        }
-        if let Some((mut last, edge)) = piece {
-            last.close(edge.to, &here);
-            off(&last);
-        }
-    }
-}
-
-/// Does the polygon turn right from one edge to the next?
-fn is_notch<S: Scalar>(a: &Edge<S>, b: &Edge<S>) -> bool {
-    cross(sub(a.to, a.from), sub(b.to, b.from)) < S::zero()
-}
-
-/// A convex piece of a body, and the side of it to keep behind.
-struct Piece<S> {
-    /// The corner where it begins.
-    from: [S; 2],
-    best: Option<Side<S>>,
-}
-
-/// The side's normal, of any length, how far u is beyond it, and how much of the share that may be used up the wish leaves (it is cut by what is
-/// lacking), times that length.
-struct Side<S> {
-    normal: [S; 2],
-    gap: S,
-    left: S,
-}
-
-/// The point to keep out, where it wishes to go, and the share of its distance that it may use up.
-struct Here<S> {
-    u: [S; 2],
-    wish: [S; 2],
-    share: S,
-}
-
-impl<S: Scalar> Here<S> {
-    fn side(&self, normal: [S; 2], gap: S) -> Side<S> {
-        Side { normal, gap, left: gap * self.share + dot(normal, self.wish) }
-    }
-}
-
-impl<S: Scalar> Piece<S> {
-    fn new(from: [S; 2]) -> Self {
-        Self { from, best: None }
-    }
-
-    /// One of its outer sides.
-    fn edge(&mut self, edge: &Edge<S>, here: &Here<S>, sign: S) {
-        let normal = [edge.normal[0] * sign, edge.normal[1] * sign];
-        let gap = (dot(edge.normal, here.u) - S::one()) * sign;
-        self.consider(here.side(normal, gap));
-    }
-
-    /// Its two sides along the rays through its first and last corners. Only whoever is beyond one keeps behind it: from within, the way out is
-    /// over an edge.
-    fn close(&mut self, to: [S; 2], here: &Here<S>) {
-        for (v, sign) in [(self.from, S::one()), (to, -S::one())] {
-            let normal = [v[1] * sign, -v[0] * sign];
-            let gap = dot(normal, here.u);
-            if gap > S::zero() {
-                self.consider(here.side(normal, gap));
-            }
-        }
-    }
-
-    /// Of the sides that u is beyond, the one that cuts its wish the least; if it is beyond none, the one it is least behind.
-    fn consider(&mut self, side: Side<S>) {
-        let better = self.best.as_ref().is_none_or(|best| {
-            let (own, other) = (S::norm(&side.normal), S::norm(&best.normal));
-            match (side.gap > S::zero(), best.gap > S::zero()) {
-                (true, true) => side.left * other > best.left * own,
-                (false, false) => side.gap * other > best.gap * own,
-                (beyond, _) => beyond,
-            }
-        });
-        if better {
-            self.best = Some(side);
-        }
+    fn keep_out(&self, at: &Place<'_, S, D>, keep: impl FnMut(Vector<S, D>, S)) {
+        pieces::keep_out(self.edges(), at, keep);
     }
 }
 
