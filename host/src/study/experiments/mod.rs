@@ -242,13 +242,15 @@ fn verdicts(skills: &Skills, all: &[Outcome<'_>], places: &Spread, on_device: &[
             claim: "faster in a soft layer, slower in an intersection, wherever the obstacles are".into(),
             paper: "-".into(),
             measured: format!(
-                "faster at {faster} of {} places ({}), slower at {slower} of {} ({})",
+                "faster at {faster} of {} places ({}), slower at {slower} of {} ({}); at {} more the original never arrives, and at {} of these neither does the default",
                 places.soft.len(),
                 range(&places.soft),
                 places.intersection.len(),
-                range(&places.intersection)
+                range(&places.intersection),
+                places.void.0,
+                places.void.1
             ),
-            holds: (faster, slower) == (places.soft.len(), places.intersection.len()),
+            holds: (faster, slower, places.failed) == (places.soft.len(), places.intersection.len(), 0),
             vital: false,
         },
     ];
@@ -288,7 +290,7 @@ fn numbers(all: &[Outcome<'_>], places: &Spread, on_device: &[Compared]) -> Map<
         let ends = |all: &[f64]| json!({ "least": all.first(), "median": super::measure::quantile(all, 0.5), "most": all.last(), "places": all.len() });
         first.insert(
             "spread".into(),
-            json!({ "soft": ends(&places.soft), "intersection": ends(&places.intersection), "failed": places.failed }),
+            json!({ "soft": ends(&places.soft), "intersection": ends(&places.intersection), "failed": places.failed, "original_failed": places.void.0, "both_failed": places.void.1 }),
         );
     }
     let mut json = Map::new();

@@ -17,8 +17,10 @@ pub struct Spread {
     pub soft: Vec<f64>,
     /// Where two layers overlap, likewise.
     pub intersection: Vec<f64>,
-    /// Places at which the default missed the goal or touched a core.
+    /// Places at which the default missed the goal or touched a core though the original method did not.
     pub failed: usize,
+    /// Places at which the original method did, which leaves nothing to compare with; and those of them at which the default did too.
+    pub void: (usize, usize),
 }
 
 /// Shares of the path at which obstacles are put.
@@ -48,11 +50,26 @@ pub fn spread(skill: &Skill, done: &(dyn Fn(usize) + Sync)) -> Result<Spread, Er
             Ok::<_, Error>(Some((mean_speed(&run, within), run.reached && !run.touched())))
         };
         let (ours, original) = (of(Column::Pliant)?, of(Column::Original)?);
-        Ok(ours.zip(original).map(|((ours, well), (original, _))| {
-            (*single, well, ours.zip(original).map(|(ours, original)| change_percent(ours, original)))
+        Ok(ours.zip(original).map(|((ours, well), (original, comparable))| {
+            let change = ours.zip(original).map(|(ours, original)| change_percent(ours, original));
+            Place { single: *single, well, comparable, change: change.filter(|_| comparable) }
         }))
     })?;
     let all = || found.iter().flatten();
-    let changes = |of: bool| sorted(all().filter(|(single, ..)| *single == of).filter_map(|(.., change)| *change));
-    Ok(Spread { soft: changes(true), intersection: changes(false), failed: all().filter(|(_, well, _)| !well).count() })
+    let changes = |single: bool| sorted(all().filter(|p| p.single == single).filter_map(|p| p.change));
+    let void = || all().filter(|p| !p.comparable);
+    Ok(Spread {
+        soft: changes(true),
+        intersection: changes(false),
+        failed: all().filter(|p| p.comparable && !p.well).count(),
+        void: (void().count(), void().filter(|p| !p.well).count()),
+    })
+}
+
+/// What came of a place.
+struct Place {
+    single: bool,
+    well: bool,
+    comparable: bool,
+    change: Option<f64>,
 }
