@@ -14,6 +14,7 @@ pub mod evaluate;
 mod field;
 pub mod fit;
 pub mod gmm;
+mod held_out;
 pub mod memory;
 pub mod quality;
 pub mod read;
@@ -24,6 +25,7 @@ mod warning;
 
 pub use demonstration::{Demonstration, Demonstrations, Unit};
 pub use error::LearnError;
+pub use held_out::held_out;
 pub use quality::Quality;
 pub use read::read;
 pub use warning::Warning;
@@ -237,7 +239,8 @@ fn model_of<const D: usize>(
     floating.ok_or("the certificate does not survive rounding to f32".into())
 }
 
-fn recordings<const D: usize>(demonstrations: &Demonstrations) -> Vec<quality::Recording<D>> {
+/// The demonstrations in the form that motions of the dimension D are compared with.
+pub fn recordings<const D: usize>(demonstrations: &Demonstrations) -> Vec<quality::Recording<D>> {
     let one = |d: &Demonstration| quality::Recording { t: d.t.clone(), x: fixed(&d.x), v: fixed(&d.v) };
     demonstrations.items().iter().map(one).collect()
 }
