@@ -155,7 +155,7 @@ pub(super) fn legend(svg: &mut Svg, corner: Pixel, right: f64, flow: bool) -> f6
     type Sign = fn(&mut Svg, Pixel);
     let entries: [(bool, &str, Sign); 5] = [
         (true, "demonstration", |svg, p| dash(svg, p, DEMONSTRATION)),
-        (true, "learnt motion from its start", |svg, p| dash(svg, p, ROLLOUT)),
+        (true, "learnt motion", |svg, p| dash(svg, p, ROLLOUT)),
         (true, "start", |svg, p| svg.circle(p, 2.6, START)),
         (true, "goal", |svg, p| svg.star(p, 7.0, ATTRACTOR)),
         (flow, "learnt flow", |svg, p| {
@@ -220,7 +220,7 @@ mod tests {
         let sheet = contact_sheet(&[skill(2), skill(3), skill(2)], 2, 500.0);
         let text = sheet.svg();
         assert_eq!(text.matches("a &lt;line></text>").count(), 3);
-        assert_eq!(text.matches(" mm</text>").count(), 3);
+        assert_eq!(text.matches(" mm</text>").count(), 3, "a scale each");
         assert!(!text.contains("NaN"));
         assert!(contact_sheet(&[], 4, 500.0).svg().starts_with("<svg"));
     }

@@ -8,32 +8,34 @@ use super::portrait::{Portrait, legend};
 use super::style::{SMALL, SMALL_SIZE};
 
 const EDGE: f64 = 12.0;
-/// Room over a tile for its title, px.
-const TITLE: f64 = 18.0;
+/// Room over a tile for its title and its note, px.
+const TITLE: f64 = 17.0;
+/// Room under it for its scale.
+const SCALE: f64 = 16.0;
 const BETWEEN: f64 = 12.0;
 /// Between streamlines, px: few enough that a small tile is no carpet.
 const SPACING: f64 = 13.0;
 /// The longest bar over the width of its tile.
 const BAR: f64 = 0.3;
 const INK: &str = r##"stroke="#15181c" stroke-width="2""##;
-const CASING: &str = r##"stroke="#ffffff" stroke-width="5""##;
+const FRAME: &str = r##"fill="none" stroke="#3a3f47""##;
 
-/// Skills in rows of so many, each in a square of its own scale with its title over and its note in it; those in space from above. `width`
+/// Skills in rows of so many, each in a square of its own scale with its title and its note over it; those in space from above. `width`
 /// in px.
 pub fn contact_sheet(skills: &[Portrait], columns: usize, width: f64) -> Figure {
     let columns = columns.max(1);
     let side = (width - 2.0 * EDGE - BETWEEN * (columns - 1) as f64) / columns as f64;
     let mut svg = Svg::default();
-    let step = Vector2::new(side + BETWEEN, side + TITLE + BETWEEN);
+    let step = Vector2::new(side + BETWEEN, side + TITLE + SCALE + BETWEEN);
     for (i, skill) in skills.iter().enumerate() {
         let Some(view) = skill.views.first() else { continue };
         let (row, column) = (i / columns, i % columns);
         let corner = Point2::new(EDGE + step.x * column as f64, EDGE + TITLE + step.y * row as f64);
         let axes = Axes::equal(corner, side, square(view.extent()));
         view.draw(&mut svg, &axes, &format!("tile{i}"), SPACING);
-        axes.frame(&mut svg, None, None);
-        svg.text(corner + Vector2::new(side / 2.0, -5.0), Anchor::Middle, "", &skill.title);
-        svg.text(corner + Vector2::new(side - 5.0, SMALL_SIZE + 3.0), Anchor::End, SMALL, &skill.note);
+        svg.rect(axes.corner, axes.size, FRAME);
+        svg.text(corner - Vector2::new(0.0, 5.0), Anchor::Start, "", &skill.title);
+        svg.text(corner + Vector2::new(side, -5.0), Anchor::End, SMALL, &skill.note);
         bar(&mut svg, &axes, &skill.unit().to_string());
     }
     let top = EDGE + step.y * skills.len().div_ceil(columns) as f64;
@@ -54,15 +56,13 @@ fn round_length(most: f64) -> f64 {
     [5.0, 2.0].into_iter().map(|m| m * power).find(|l| *l <= most * (1.0 + 1e-9)).unwrap_or(power)
 }
 
+/// Under the left of a tile.
 fn bar(svg: &mut Svg, axes: &Axes, unit: &str) {
     let length = round_length(BAR * axes.extent.size().x);
-    let from = Point2::new(axes.corner.x + 7.0, axes.end().y - 7.0);
-    let ends = [from, from + Vector2::new(length * axes.scale(), 0.0)];
-    svg.line(ends, CASING);
-    svg.line(ends, INK);
-    let middle = nalgebra::center(&ends[0], &ends[1]) - Vector2::new(0.0, 5.0);
-    // A short bar's text begins where the bar does.
-    svg.text(Point2::new(middle.x.max(from.x + 14.0), middle.y), Anchor::Middle, SMALL, &format!("{length} {unit}"));
+    let from = Point2::new(axes.corner.x, axes.end().y + 9.0);
+    let to = from + Vector2::new(length * axes.scale(), 0.0);
+    svg.line([from, to], INK);
+    svg.text(to + Vector2::new(5.0, 0.35 * SMALL_SIZE), Anchor::Start, SMALL, &format!("{length} {unit}"));
 }
 
 #[cfg(test)]

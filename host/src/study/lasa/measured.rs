@@ -19,8 +19,8 @@ pub struct Measured {
     pub k: usize,
     /// On the demonstrations it was learnt from.
     pub quality: Quality,
-    /// The mean over its demonstrations, each measured by what was learnt from all others.
-    pub held_out: Option<Quality>,
+    /// On demonstrations it was not learnt from.
+    pub held_out: Option<HeldOut>,
     /// Processor time of learning, without reading and drawing, s.
     pub seconds: f64,
     /// Does its certificate hold in f32, rounding included?
@@ -31,6 +31,15 @@ pub struct Measured {
     pub shown: Demonstrations,
     /// To be drawn.
     pub portrait: Option<Portrait>,
+}
+
+/// Each demonstration measured by what was learnt from all others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldOut {
+    /// Over demonstrations; numbers of rollouts are sums.
+    pub mean: Quality,
+    /// The largest DTWD of one, m: a motion that leads elsewhere from a start it does not know is seen here.
+    pub worst: f64,
 }
 
 /// A motion that was not.
@@ -71,7 +80,7 @@ pub fn learn_one(source: &Source, unit: Option<Unit>, options: &Options) -> Resu
         Skill::Planar(ds) => ds.certificate().rate.to_f64(),
         Skill::Spatial(ds) => ds.certificate().rate.to_f64(),
     });
-    let note = format!("{:.0} mm", quality.dtwd * 1e3);
+    let note = format!("DTWD {:.0} mm", quality.dtwd * 1e3);
     Ok(Measured {
         name: source.name.clone(),
         k: model.component.len(),
@@ -85,16 +94,21 @@ pub fn learn_one(source: &Source, unit: Option<Unit>, options: &Options) -> Resu
     })
 }
 
-/// The mean of qualities; of numbers of rollouts the sum.
-pub fn mean_of(all: &[Quality]) -> Option<Quality> {
-    let mean = |of: fn(&Quality) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
-    (!all.is_empty()).then(|| Quality {
-        rmse: mean(|q| q.rmse),
-        e_dot: mean(|q| q.e_dot),
-        dtwd: mean(|q| q.dtwd),
-        path_error: mean(|q| q.path_error),
-        pace: mean(|q| q.pace),
-        converged: all.iter().map(|q| q.converged).sum(),
-        rollouts: all.iter().map(|q| q.rollouts).sum(),
-    })
+impl HeldOut {
+    /// Of what was measured on each; none of none.
+    pub fn of(all: &[Quality]) -> Option<Self> {
+        let mean = |of: fn(&Quality) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
+        (!all.is_empty()).then(|| Self {
+            mean: Quality {
+                rmse: mean(|q| q.rmse),
+                e_dot: mean(|q| q.e_dot),
+                dtwd: mean(|q| q.dtwd),
+                path_error: mean(|q| q.path_error),
+                pace: mean(|q| q.pace),
+                converged: all.iter().map(|q| q.converged).sum(),
+                rollouts: all.iter().map(|q| q.rollouts).sum(),
+            },
+            worst: all.iter().map(|q| q.dtwd).fold(0.0, f64::max),
+        })
+    }
 }

@@ -9,7 +9,7 @@ mod report;
 
 use std::path::Path;
 
-pub use measured::{Failed, Measured, learn_one, mean_of};
+pub use measured::{Failed, HeldOut, Measured, learn_one};
 pub use motions::{Source, sources};
 
 use super::{Findings, parallel};
@@ -82,9 +82,9 @@ pub fn study(task: &Task<'_>, progress: Progress<'_>) -> Result<Found, Error> {
     let lasa = peers::are_lasa(&measured);
     let mut findings = report::findings(&measured, &failed, task, lasa);
     let portraits: Vec<_> = measured.iter().filter_map(|m| m.portrait.clone()).collect();
-    let columns = portraits.len().clamp(1, 6);
+    let columns = portraits.len().clamp(1, 5);
     let caption = "Demonstrations, the learnt motion from where each starts, and its flow; each motion at its own scale, with its DTWD";
-    let width = (190 * columns).max(420) as f64;
+    let width = (216 * columns).max(420) as f64;
     findings.figures.push(("lasa", caption.into(), contact_sheet(&portraits, columns, width)));
     Ok(Found { findings, measured, failed, lasa })
 }
@@ -117,7 +117,7 @@ fn hold_out(
     for (one, qualities) in measured.iter_mut().zip(of) {
         // A mean over the easier ones alone would flatter.
         if qualities.len() == one.shown.items().len() {
-            one.held_out = mean_of(&qualities);
+            one.held_out = HeldOut::of(&qualities);
         }
     }
     Ok(())

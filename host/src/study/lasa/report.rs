@@ -2,11 +2,11 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Failed, Measured, Task, peers};
+use super::{Failed, HeldOut, Measured, Task, peers};
 use crate::learn::Quality;
 use crate::study::Findings;
 use crate::study::measure::sorted;
-use crate::study::table::{Table, number};
+use crate::study::table::{Table, number, yes};
 
 /// The middle of all values, or the mean of both middle ones.
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
@@ -29,10 +29,27 @@ fn merits(q: Option<&Quality>) -> [String; 3] {
     [number(q.map(|q| q.rmse * 1e3), 2), number(q.map(|q| q.e_dot), 4), number(q.map(|q| q.dtwd * 1e3), 0)]
 }
 
+fn arrived(q: &Quality) -> String {
+    format!("{} of {}", q.converged, q.rollouts)
+}
+
+/// The columns of demonstrations that were held out.
+fn unseen(held_out: Option<&HeldOut>) -> Vec<String> {
+    let mut columns = merits(held_out.map(|h| &h.mean)).to_vec();
+    columns.push(number(held_out.map(|h| h.worst * 1e3), 0));
+    columns.push(held_out.map_or("-".into(), |h| arrived(&h.mean)));
+    columns
+}
+
+fn held_out_medians(measured: &[Measured]) -> Option<HeldOut> {
+    let all = || measured.iter().filter_map(|m| m.held_out.as_ref());
+    Some(HeldOut { mean: medians(all().map(|h| &h.mean))?, worst: median(all().map(|h| h.worst))? })
+}
+
 fn motions(measured: &[Measured], held_out: bool) -> Table {
     let title = "The motions. RMSE: mean over samples of the root of the mean over axes of the squared velocity error; e_dot: mean of 1 - cos; DTWD: \
                  dynamic time warping distance of rollouts, mean over demonstrations; margin: the rate certified in f32, rounding included. CPU s: processor time of one core. \
-                 Held out: the mean over demonstrations, each measured by what was learnt from the others";
+                 Held out: the mean over demonstrations, each measured by what was learnt from the others, and the worst DTWD of one";
     let mut header = vec![
         "motion",
         "demonstrations",
@@ -47,10 +64,9 @@ fn motions(measured: &[Measured], held_out: bool) -> Table {
         "CPU s",
     ];
     if held_out {
-        header.extend(["held out: RMSE mm/s", "e_dot", "DTWD mm", "arrived"]);
+        header.extend(["held out: RMSE mm/s", "e_dot", "DTWD mm", "worst", "arrived"]);
     }
     let mut table = Table::new("lasa", title, &header);
-    let arrived = |q: &Quality| format!("{} of {}", q.converged, q.rollouts);
     for m in measured {
         let mut row = vec![m.name.clone(), m.quality.rollouts.to_string(), m.k.to_string()];
         row.extend(merits(Some(&m.quality)));
@@ -62,8 +78,7 @@ fn motions(measured: &[Measured], held_out: bool) -> Table {
             number(m.seconds, 2),
         ]);
         if held_out {
-            row.extend(merits(m.held_out.as_ref()));
-            row.push(m.held_out.as_ref().map_or("-".into(), arrived));
+            row.extend(unseen(m.held_out.as_ref()));
         }
         table.push(row);
     }
@@ -80,16 +95,10 @@ fn motions(measured: &[Measured], held_out: bool) -> Table {
         number(of(|m| m.seconds), 2),
     ]);
     if held_out {
-        let unseen = medians(measured.iter().filter_map(|m| m.held_out.as_ref()));
-        row.extend(merits(unseen.as_ref()));
-        row.push(unseen.as_ref().map_or("-".into(), arrived));
+        row.extend(unseen(held_out_medians(measured).as_ref()));
     }
     table.push(row);
     table
-}
-
-fn yes(x: bool) -> String {
-    crate::study::table::yes(x)
 }
 
 /// The median of each figure; of numbers of rollouts the sum.
@@ -112,9 +121,9 @@ fn beside_peers(measured: &[Measured], failed: &[Failed]) -> Table {
         let merit = |i: usize, decimals| p.medians.map_or("by its seed".into(), |m| number(m[i], decimals));
         table.push([
             p.name.into(),
-            format!("{} of {}", p.learnt[0], p.learnt[1]),
-            p.broken.to_string(),
-            number(p.seconds, 2),
+            p.learnt.map_or(format!("{} tried", p.tried), |n| format!("{n} of {}", p.tried)),
+            format!("{} of {}", p.broken, p.tried),
+            p.seconds.to_string(),
             merit(0, 2),
             merit(1, 3),
             merit(2, 0),
@@ -128,7 +137,7 @@ fn beside_peers(measured: &[Measured], failed: &[Failed]) -> Table {
             measured.len(),
             measured.len() + failed.iter().filter(|f| is_unlearnt(f, measured)).count()
         ),
-        measured.iter().filter(|m| !m.certified).count().to_string(),
+        format!("{} of {}", measured.iter().filter(|m| !m.certified).count(), measured.len()),
         number(median(measured.iter().map(|m| m.seconds)), 2),
         number(q.map(|q| q.rmse * 1e3), 2),
         number(q.map(|q| q.e_dot), 3),
@@ -145,6 +154,12 @@ fn quality_json(q: &Quality) -> Value {
     json!({"rmse_mm_s": q.rmse * 1e3, "e_dot": q.e_dot, "dtwd_mm": q.dtwd * 1e3, "path_error_mm": q.path_error * 1e3, "pace": q.pace, "converged": q.converged, "rollouts": q.rollouts})
 }
 
+fn held_out_json(h: &HeldOut) -> Value {
+    let mut all = quality_json(&h.mean);
+    all["worst_dtwd_mm"] = (h.worst * 1e3).into();
+    all
+}
+
 fn numbers(measured: &[Measured], failed: &[Failed], task: &Task<'_>, lasa: bool) -> Map<String, Value> {
     let motion = |m: &Measured| {
         let mut one = quality_json(&m.quality);
@@ -156,7 +171,7 @@ fn numbers(measured: &[Measured], failed: &[Failed], task: &Task<'_>, lasa: bool
         one["demonstrations"] = m.shown.items().len().into();
         one["warnings"] = m.shown.warnings().iter().map(ToString::to_string).collect();
         if task.held_out {
-            one["held_out"] = m.held_out.as_ref().map(quality_json).into();
+            one["held_out"] = m.held_out.as_ref().map(held_out_json).into();
         }
         one
     };
@@ -166,12 +181,11 @@ fn numbers(measured: &[Measured], failed: &[Failed], task: &Task<'_>, lasa: bool
     medians_json["seconds"] = middle(|m| m.seconds);
     medians_json["margin"] = middle(|m| m.margin);
     if task.held_out {
-        medians_json["held_out"] =
-            medians(measured.iter().filter_map(|m| m.held_out.as_ref())).as_ref().map(quality_json).into();
+        medians_json["held_out"] = held_out_medians(measured).as_ref().map(held_out_json).into();
     }
     let fault = |f: &Failed| json!({"name": f.name, "error": f.reason});
     let peer = |p: &peers::Peer| {
-        json!({"name": p.name, "learnt": p.learnt[0], "tried": p.learnt[1], "certificate_broken": p.broken, "seconds": p.seconds,
+        json!({"name": p.name, "learnt": p.learnt, "tried": p.tried, "certificate_broken": p.broken, "seconds": p.seconds,
                "rmse_mm_s": p.medians.map(|m| m[0]), "e_dot": p.medians.map(|m| m[1]), "dtwd_mm": p.medians.map(|m| m[2])})
     };
     let mut all = Map::new();
