@@ -102,7 +102,8 @@ fn outline(edges: &[Edge], piece: &[usize]) -> Vec<usize> {
 
 fn side(body: &Body, edges: &[Edge], piece: &[usize], x: &DVector<f64>, asked: &DVector<f64>) -> Option<Side> {
     let outline = outline(edges, piece);
-    let closed = outline.len() == edges.len();
+    // Only a polygon of one piece goes round; the outline of another may have all edges and still ends at the two sides of a notch.
+    let closed = piece.len() == edges.len();
     let inner = |k: usize, at_end: bool| closed || if at_end { k + 1 < outline.len() } else { k > 0 };
     // The nearest point of every edge, and the half-space there, if there is one.
     let mut feet: Vec<(f64, Option<DVector<f64>>)> = Vec::new();
@@ -135,7 +136,7 @@ fn side(body: &Body, edges: &[Edge], piece: &[usize], x: &DVector<f64>, asked: &
     }
     let lines = outline.iter().map(|i| (edges[*i].normal.clone(), edges[*i].gap(x))).collect::<Vec<_>>();
     let mut beyond: Vec<(DVector<f64>, f64)> = lines.iter().filter(|line| line.1 > 0.0).cloned().collect();
-    if piece.len() < edges.len() {
+    if !closed {
         let from = &edges[piece[0]].from - &body.center;
         let to = &edges[piece[piece.len() - 1]].to - &body.center;
         let own = x - &body.center;

@@ -113,6 +113,21 @@ fn half_spaces_by_hand() {
     let same = seen.iter().filter(|s| (s.normal[0] + half).abs() < 1e-14 && (s.gap - 2.0 * half).abs() < 1e-13);
     assert_eq!((seen.len(), same.count()), (4, 2));
     assert!(seen.iter().all(|s| s.gap > 1.4), "{seen:?}");
+    // A star of four points: the narrow pieces on the other side of the origin are kept off by the line through it across x.
+    let (tip, notch) = (5.0, 1.0);
+    let vertices = vec![
+        [tip, 0.0],
+        [notch, notch],
+        [0.0, tip],
+        [-notch, notch],
+        [-tip, 0.0],
+        [-notch, -notch],
+        [0.0, -tip],
+        [notch, -notch],
+    ];
+    let seen = of(OracleObstacle::of(&[0.0, 0.0], OracleShape::Polygon { vertices }), &[0.0, 6.0]);
+    let across = seen.iter().filter(|s| (s.normal[1] - 1.0).abs() < 1e-14 && (s.gap - 6.0).abs() < 1e-13);
+    assert_eq!((seen.len(), across.count()), (4, 1), "{seen:?}");
 }
 
 #[test]
