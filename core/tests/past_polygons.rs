@@ -92,6 +92,23 @@ fn a_polygon_farther_than_a_sample_may_use_up_changes_nothing() {
     assert!(changed.is_empty());
 }
 
+/// The edges of one of its pieces are gone on from to both sides of its only notch, which is the nearest corner of that outline.
+#[test]
+fn from_inside_a_polygon_with_one_notch_it_is_driven_out() {
+    let corners = [
+        [0.1038267954459597, 0.027176393779581615],
+        [0.11717786528662774, 0.26505905264198115],
+        [-0.14188584463844633, 0.11326728325009451],
+        [-0.17000507558166095, -0.05553093404160905],
+        [-0.00956105115008004, -0.22963731917823982],
+        [0.18715178734161436, -0.13291567371352855],
+        [0.1251337626247358, -0.000753389448882238],
+    ];
+    let x = V::new(-0.00803637994309836, -0.0012765686117041097);
+    let command = controller(&corners, false, x).tick(&RobotState::new(x).unwrap(), DT);
+    assert!(command.velocity.norm() > 0.9 * SPEED, "{command:?}");
+}
+
 #[test]
 fn from_inside_a_polygon_it_is_driven_out() {
     let r = &mut ChaCha8Rng::seed_from_u64(2);
