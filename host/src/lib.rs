@@ -11,3 +11,4 @@ pub mod model;
 pub mod plot;
 pub mod scene;
 pub mod sim;
+pub mod study;
