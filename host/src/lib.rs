@@ -6,6 +6,7 @@ pub mod bridge;
 pub mod cli;
 pub mod error;
 pub mod eval;
+pub mod import;
 pub mod learn;
 pub mod model;
 pub mod plot;

@@ -162,7 +162,9 @@ fn own(i: usize, name: &'static str) -> Result<Skill, Error> {
 
 fn learnt(folder: &Path, i: usize) -> Result<Skill, Error> {
     let (name, file) = NAMES[i];
-    let options = learn::Options { name: name.to_lowercase(), ..learn::Options::default() };
+    // Ten times the size of the handwriting: about the table's.
+    let unit = Some(learn::Unit::Cm);
+    let options = learn::Options { name: name.to_lowercase(), unit, ..learn::Options::default() };
     let learnt = learn::learn(&[folder.join(file)], &options, &|_| {})?;
     let starts: Vec<Vector2<f64>> = learnt
         .demonstrations
