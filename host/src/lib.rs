@@ -12,3 +12,4 @@ pub mod model;
 pub mod plot;
 pub mod scene;
 pub mod sim;
+pub mod study;
