@@ -70,3 +70,48 @@ pub fn sorted(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     all.sort_by(f64::total_cmp);
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector2;
+
+    /// Along x, with these speeds, one a millisecond; every other one in a layer.
+    fn drive(speeds: impl IntoIterator<Item = f64>) -> Drive {
+        let step = |(i, v): (usize, f64)| Step {
+            position: Vector2::zeros(),
+            velocity: Vector2::new(v, 0.0),
+            gamma: 2.0 + i as f64,
+            layers: u8::from(i % 2 == 1),
+            status: if i == 3 { Status::GUARDED } else { Status::empty() },
+        };
+        Drive { steps: speeds.into_iter().enumerate().map(step).collect(), reached: true }
+    }
+
+    #[test]
+    fn means_jumps_and_shares() {
+        let d = drive([0.0, 1.0, 2.0, 5.0]);
+        assert_eq!(mean_speed(&d, |_| true), Some(8.0 / 3.0));
+        assert_eq!(mean_speed(&d, |s| s.layers > 0), Some(3.0));
+        assert_eq!(mean_speed(&d, |s| s.layers > 1), None);
+        assert_eq!(profile(&d, |s| s.layers > 0), [(0.0, 1.0), (0.001, 2.0), (0.002, 5.0)]);
+        assert_eq!((largest_jump(&d), guarded(&d), d.min_gamma()), (3.0, 0.25, 2.0));
+        assert!((change_percent(1.25, 1.0) - 25.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn jerk_is_the_second_derivative_of_velocity() {
+        // v = t^2/2: jerk 1. Steady acceleration: none.
+        let t = |i: u32| f64::from(i) * TICK;
+        assert!((jerk(&drive((0..500).map(|i| t(i) * t(i) / 2.0))) - 1.0).abs() < 1e-6);
+        assert!(jerk(&drive((0..500).map(t))) < 1e-6);
+    }
+
+    #[test]
+    fn quantiles_of_what_is_a_number() {
+        let all = sorted([3.0, f64::NAN, 1.0, 2.0]);
+        assert_eq!(all, [1.0, 2.0, 3.0]);
+        assert_eq!((quantile(&all, 0.0), quantile(&all, 0.5), quantile(&all, 1.0)), (Some(1.0), Some(2.0), Some(3.0)));
+        assert_eq!(quantile(&[], 0.5), None);
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use nalgebra::{Rotation2, Vector2, Vector3};
+use nalgebra::{Vector2, Vector3};
 use pliant_core::{Motion, Vector};
 
 use super::parallel;
@@ -46,10 +46,6 @@ impl Place {
     /// The angle of the motion, rad.
     pub fn heading(&self) -> f64 {
         self.along.y.atan2(self.along.x)
-    }
-    /// A direction that is turned left from the motion by an angle, rad.
-    pub fn turned(&self, angle: f64) -> Vector2<f64> {
-        Rotation2::new(angle) * self.along
     }
 }
 
@@ -166,7 +162,9 @@ fn own(i: usize, name: &'static str) -> Result<Skill, Error> {
 
 fn learnt(folder: &Path, i: usize) -> Result<Skill, Error> {
     let (name, file) = NAMES[i];
-    let options = learn::Options { name: name.to_lowercase(), ..learn::Options::default() };
+    // Ten times the size of the handwriting: about the table's.
+    let unit = Some(learn::Unit::Cm);
+    let options = learn::Options { name: name.to_lowercase(), unit, ..learn::Options::default() };
     let learnt = learn::learn(&[folder.join(file)], &options, &|_| {})?;
     let starts: Vec<Vector2<f64>> = learnt
         .demonstrations
@@ -176,4 +174,25 @@ fn learnt(folder: &Path, i: usize) -> Result<Skill, Error> {
         .collect();
     let mean = starts.iter().sum::<Vector2<f64>>() / starts.len().max(1) as f64;
     Skill::new(name, format!("LASA handwriting, {file}"), learnt.model, mean)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn our_own_skills_have_paths_from_their_start_to_their_goal() {
+        let skills = Skills::new(None, &|_| {}).unwrap();
+        for skill in skills.three().into_iter().chain([&skills.recorded]) {
+            assert_eq!(skill.place(0.0).at, skill.start);
+            assert!((skill.place(1.0).at - skill.goal()).norm() < 3.0 * STEP, "{}", skill.name);
+            assert!(skill.path.windows(2).all(|w| ((w[1] - w[0]).norm() - STEP).abs() < 1e-9));
+            assert!(skill.times.windows(2).all(|w| w[1] > w[0]) && skill.time(1.0) > 1.0);
+            let place = skill.place(0.4);
+            assert!((place.along.norm() - 1.0).abs() < 1e-12 && place.along.dot(&place.left()).abs() < 1e-12);
+            assert_eq!(skill.distance(&place.at), 0.0);
+            let beside = skill.distance(&(place.at + place.left() * 0.01));
+            assert!(beside > 0.008 && beside < 0.0101, "{beside}");
+        }
+    }
 }

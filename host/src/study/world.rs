@@ -104,3 +104,31 @@ impl<'a> World<'a> {
         Ok(Scene::parse_with_model(&name, &self.toml(column), &self.skill.text)?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::skill::Skills;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn a_world_is_the_scene_it_says() {
+        let skills = Skills::new(None, &|_| {}).unwrap();
+        let skill = &skills.s;
+        let center = skill.place(0.5).at;
+        let body = Body::new("ellipse", [0.05, 0.02], 1.5, center, 0.7);
+        let out = Vector2::new(0.7_f64.cos(), 0.7_f64.sin());
+        assert!((body.reach(&out) - 0.05).abs() < 1e-12);
+        assert!((body.stiffness() - 0.5_f64.exp()).abs() < 1e-12);
+        for column in Column::ALL {
+            let scene = World::new(skill, vec![body.clone()]).scene("w", column).unwrap();
+            let o = scene.obstacles()[0].at(0.0);
+            let on = |far: f64| (center + out * far).push(0.0);
+            assert!((o.gamma(&on(0.05)) - 1.0).abs() < 1e-9 && (o.gamma_soft(&on(0.075)) - 1.0).abs() < 1e-9);
+            assert_eq!(scene.guard().is_some(), column == Column::Pliant);
+            assert_eq!(scene.starts(), [Vector3::new(skill.start.x, skill.start.y, 0.0)]);
+        }
+        let hard = body.hardened();
+        assert_eq!((hard.axes, hard.ratio), ([0.05 * 1.5, 0.02 * 1.5], 1.0));
+    }
+}
