@@ -7,11 +7,15 @@ use pliant_core::{Command, Controller, Obstacle, RobotState, Settings};
 
 /// Something that counts up: instructions on an emulated board, nanoseconds on a desk.
 pub trait Clock {
-    /// The count now.
-    fn now(&mut self) -> u32;
-    /// What lies between two counts, by the measure that is reported, the cost of reading the clock not counted.
-    fn between(&self, start: u32, end: u32) -> u32;
+    /// Begins to count.
+    fn start(&mut self);
+    /// What was counted since, by the measure that is reported, the cost of reading the clock not counted; `None` if it is more than the clock can count.
+    fn stop(&mut self) -> Option<u32>;
 }
+
+/// The clock cannot count that far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Overflow;
 
 /// A tick to be measured: the shape of the problem. The dimension and number type are the function's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
