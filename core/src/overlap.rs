@@ -23,20 +23,17 @@ pub(crate) enum Inside<'a, S: Scalar, const D: usize> {
 }
 
 impl<'a, S: Scalar, const D: usize> Inside<'a, S, D> {
-    /// Below one inside.
-    fn level(&self, x: &Vector<S, D>) -> S {
+    /// Below one inside; and where that grows, for [`Obstacle::outward`].
+    fn look(&self, x: &Vector<S, D>) -> (S, Vector<S, D>) {
         match self {
-            Self::Core(o) => o.gamma(x),
+            Self::Core(o) => o.look(x),
             Self::Sight(o) => o.sight(x),
         }
     }
 
-    /// Where that grows.
-    fn slope(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        match self {
-            Self::Core(o) => o.gradient(x),
-            Self::Sight(o) => o.sight_slope(x),
-        }
+    /// Below one inside.
+    fn level(&self, x: &Vector<S, D>) -> S {
+        self.look(x).0
     }
 
     pub fn obstacle(&self) -> &'a Obstacle<S, D> {
@@ -84,43 +81,36 @@ fn may_reach<S: Scalar, const D: usize>(wall: &Obstacle<S, D>, b: &Obstacle<S, D
     let inside = gamma > S::one() && !wall.is_near(gamma, b.outer());
     // Where the free space is convex it holds all that is between corners it holds.
     let convex = !matches!(wall.spec().shape, Shape::Polygon(_));
-    !inside && !(convex && (0..1 << D).all(|n| wall.gamma(&b.corner(n)) > S::one()))
+    !(inside || convex && (0..1 << D).all(|n| wall.gamma(&b.corner(n)) > S::one()))
 }
 
-/// A point inside both hard cores, m, of two that [`are_near`]; `None` if they do not overlap.
+/// A point inside both of two that [`are_near`], m; `None` if there is none.
 pub(crate) fn between<S: Scalar, const D: usize>(
-    a: &Obstacle<S, D>,
-    b: &Obstacle<S, D>,
+    a: Inside<'_, S, D>,
+    b: Inside<'_, S, D>,
     depth: Depth,
 ) -> Option<Vector<S, D>> {
+    let (one, other) = (a.obstacle(), b.obstacle());
     // Only the ratio of both counts, and squares of 1/axis leave some numbers' range.
     let most = |o: &Obstacle<S, D>| o.inverse_axes().iter().fold(S::zero(), |m, x| m.max(*x));
-    let scale = S::one() / most(a).max(most(b));
-    let (gamma, start) = match (ellipsoid(a, scale), ellipsoid(b, scale)) {
-        (Some(pa), Some(pb)) => {
-            let (gamma, point) = between_ellipsoids(a, &pa, b, &pb, depth);
+    let scale = S::one() / most(one).max(most(other));
+    let (gamma, start) = match (ellipsoid(one, scale), ellipsoid(other, scale)) {
+        (Some(p), Some(q)) => {
+            let (gamma, point) = between_ellipsoids(one, &p, other, &q, depth);
             return (gamma < S::one()).then_some(point);
         }
-        _ if a.spec().wall => beyond_wall(a, b, depth),
-        _ if b.spec().wall => beyond_wall(b, a, depth),
-        _ => on_the_way(a, b, depth),
+        _ if one.spec().wall => beyond_wall(one, &b, depth),
+        _ if other.spec().wall => beyond_wall(other, &a, depth),
+        _ => on_the_way(&a, &b, depth),
     };
-    let walls = a.spec().wall || b.spec().wall;
+    let walls = one.spec().wall || other.spec().wall;
     if gamma < S::one() && (walls || depth != Depth::Most) {
         return Some(start);
     }
     // What sticks into a wall need not do so along the wall's normal, nor overlap on the way between the centres.
-    common(&[Inside::Core(a), Inside::Core(b)], &start, depth)
-}
-
-/// A point inside all of these, m, searched from `start`; see [`Search`]. `None` if none was found.
-pub(crate) fn common<S: Scalar, const D: usize>(
-    members: &[Inside<'_, S, D>],
-    start: &Vector<S, D>,
-    depth: Depth,
-) -> Option<Vector<S, D>> {
-    let mut search = Search::new(members, start);
-    while search.step(members, depth) {}
+    let members = [a, b];
+    let mut search = Search::new(&members, &start);
+    while search.step(&members, depth) {}
     search.found()
 }
 
@@ -145,8 +135,9 @@ impl<S: Scalar, const D: usize> Search<S, D> {
         let Some(left) = self.left.checked_sub(1) else { return false };
         self.left = 0;
         let x = &self.x;
-        let worst = members.iter().map(|o| (o.level(x), o)).reduce(|worst, o| if o.0 > worst.0 { o } else { worst });
-        let Some((gamma, member)) = worst else { return false };
+        let looks = members.iter().map(|o| (o.look(x), o));
+        let worst = looks.reduce(|worst, o| if o.0.0 > worst.0.0 { o } else { worst });
+        let Some(((gamma, slope), member)) = worst else { return false };
         if self.best.as_ref().is_none_or(|(least, _)| gamma < *least) {
             self.best = Some((gamma, *x));
         }
@@ -154,7 +145,7 @@ impl<S: Scalar, const D: usize> Search<S, D> {
         if gamma < depth.enough() || inside && depth == Depth::Well && left < STEPS - STEPS_WELL {
             return false;
         }
-        let (length, away) = unit(&member.slope(x));
+        let (length, away) = unit(&member.obstacle().outward(&slope));
         if !(length > S::zero()) || gamma >= S::one() && are_apart(members, member, x, gamma, &away) {
             return false;
         }
@@ -200,17 +191,17 @@ fn are_apart<S: Scalar, const D: usize>(
 type Found<S, const D: usize> = (S, Vector<S, D>);
 
 /// Between the centres, the point where both Gammas are equal.
-fn on_the_way<S: Scalar, const D: usize>(a: &Obstacle<S, D>, b: &Obstacle<S, D>, depth: Depth) -> Found<S, D> {
-    let (from, to) = (a.spec().center, b.spec().center);
-    halve(|l| from + (to - from) * l, |x| (a.gamma(x), b.gamma(x)), HALVINGS_TO_START, depth)
+fn on_the_way<S: Scalar, const D: usize>(a: &Inside<'_, S, D>, b: &Inside<'_, S, D>, depth: Depth) -> Found<S, D> {
+    let (from, to) = (a.obstacle().spec().center, b.obstacle().spec().center);
+    halve(|l| from + (to - from) * l, |x| (a.level(x), b.level(x)), HALVINGS_TO_START, depth)
 }
 
 /// Out of a wall's free space along its normal at an obstacle's centre, the point where both Gammas are equal.
-fn beyond_wall<S: Scalar, const D: usize>(wall: &Obstacle<S, D>, b: &Obstacle<S, D>, depth: Depth) -> Found<S, D> {
-    let center = b.spec().center;
+fn beyond_wall<S: Scalar, const D: usize>(wall: &Obstacle<S, D>, b: &Inside<'_, S, D>, depth: Depth) -> Found<S, D> {
+    let (center, outer) = (b.obstacle().spec().center, b.obstacle().outer());
     let (_, direction) = unit(&-wall.gradient(&center));
     // The wall's Gamma falls on the way out.
-    halve(|l| center + direction * (l * b.outer()), |x| (b.gamma(x), wall.gamma(x)), HALVINGS, depth)
+    halve(|l| center + direction * (l * outer), |x| (b.level(x), wall.gamma(x)), HALVINGS, depth)
 }
 
 /// scale^2 Q diag(1/a^2) Q' of an ellipsoid, or nothing for all else.

@@ -163,7 +163,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Clusters<S, D, CAP> {
                 }
                 others &= !(1 << j);
                 if overlap::are_near(&one.obstacle, &other.obstacle) {
-                    if ordered(one, other, Depth::Any).is_some() {
+                    if ordered(core(one), core(other), Depth::Any).is_some() {
                         self.link(index, j);
                         self.link(j, index);
                     }
@@ -194,7 +194,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Clusters<S, D, CAP> {
         let next = match self.together(cluster, entries).as_deref() {
             None => Next::Tree,
             Some([Inside::Sight(a), Inside::Sight(b)]) if !is_polygon(a) && !is_polygon(b) => {
-                overlap::between(a, b, Depth::Most).map_or(Next::Tree, Next::Shared)
+                overlap::between(Inside::Core(a), Inside::Core(b), Depth::Most).map_or(Next::Tree, Next::Shared)
             }
             Some(members) => Next::Search(Search::new(members, &amidst(members))),
         };
@@ -312,14 +312,17 @@ fn amidst<S: Scalar, const D: usize>(members: &[Inside<'_, S, D>]) -> Vector<S, 
     mean
 }
 
-/// A point that two of the table's obstacles have in common; whatever their places, for which obstacle is where must not matter.
-fn ordered<S: Scalar, const D: usize>(a: &Entry<S, D>, b: &Entry<S, D>, depth: Depth) -> Option<Vector<S, D>> {
-    let (a, b) = if a.id < b.id { (&a.obstacle, &b.obstacle) } else { (&b.obstacle, &a.obstacle) };
-    if depth != Depth::Any && !overlap::are_near(a, b) {
-        // They have moved apart since they were compared.
-        return None;
-    }
-    overlap::between(a, b, depth)
+/// A point that two have in common; whatever their places, for which obstacle is where must not matter.
+fn ordered<'a, S: Scalar, const D: usize>(
+    (a, of_a): (&'a Entry<S, D>, Inside<'a, S, D>),
+    (b, of_b): (&'a Entry<S, D>, Inside<'a, S, D>),
+    depth: Depth,
+) -> Option<Vector<S, D>> {
+    if a.id < b.id { overlap::between(of_a, of_b, depth) } else { overlap::between(of_b, of_a, depth) }
+}
+
+fn core<S: Scalar, const D: usize>(entry: &Entry<S, D>) -> (&Entry<S, D>, Inside<'_, S, D>) {
+    (entry, Inside::Core(&entry.obstacle))
 }
 
 /// Where a child refers to: from the overlap with its parent on towards the parent's reference point, as far as the child's own core goes. Then in the
@@ -330,11 +333,13 @@ fn towards_parent<S: Scalar, const D: usize>(
     child: usize,
 ) -> Option<Vector<S, D>> {
     let (parent, child) = (entries.get(parent)?, entries.get(child)?);
-    let mut point = ordered(parent, child, Depth::Well)?;
-    let (parent, child) = (&parent.obstacle, &child.obstacle);
-    if is_polygon(child) {
-        point = overlap::common(&[Inside::Sight(child), Inside::Core(parent)], &point, Depth::Well)?;
+    if !overlap::are_near(&parent.obstacle, &child.obstacle) {
+        // They have moved apart since they were compared.
+        return None;
     }
+    let inside = if child.obstacle.spec().wall { core(child) } else { (child, Inside::Sight(&child.obstacle)) };
+    let point = ordered(core(parent), inside, Depth::Well)?;
+    let (parent, child) = (&parent.obstacle, &child.obstacle);
     if parent.spec().wall {
         return Some(point);
     }
@@ -347,7 +352,7 @@ fn towards_parent<S: Scalar, const D: usize>(
         if further > S::one() {
             break;
         }
-        let level = child.sight(&(point + way * further));
+        let level = child.sight(&(point + way * further)).0;
         if level <= inside {
             reached = further;
             if level > nearly {
