@@ -42,7 +42,10 @@ pub(super) struct Clusters<S: Scalar, const D: usize, const CAP: usize> {
 enum Task<S: Scalar, const D: usize> {
     None,
     /// One for all of this cluster.
-    Common { cluster: u64, search: Search<S, D> },
+    Common {
+        cluster: u64,
+        search: Search<S, D>,
+    },
     /// One for each below a root.
     Tree(Tree<S, D>),
 }
@@ -261,6 +264,9 @@ impl<S: Scalar, const D: usize, const CAP: usize> Clusters<S, D, CAP> {
 
     /// Goes on through a tree, up to the next child.
     fn grow(&mut self, mut tree: Tree<S, D>, entries: &mut [Entry<S, D>]) {
+        if tree.reached == tree.cluster {
+            return;
+        }
         while tree.children == 0 {
             if tree.front == 0 {
                 (tree.front, tree.next) = (tree.next, 0);

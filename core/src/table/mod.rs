@@ -79,13 +79,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     ///
     /// # Errors
     /// [`TableFull`]; then nothing has changed.
-    pub fn upsert(
-        &mut self,
-        id: u16,
-        obstacle: Obstacle<S, D>,
-        age: S,
-        ageing: &Ageing<S>,
-    ) -> Result<(), TableFull> {
+    pub fn upsert(&mut self, id: u16, obstacle: Obstacle<S, D>, age: S, ageing: &Ageing<S>) -> Result<(), TableFull> {
         self.put(id, obstacle, age, ageing)?;
         while self.settle() {}
         Ok(())
@@ -107,13 +101,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     ///
     /// # Errors
     /// [`TableFull`]; then nothing has changed.
-    pub fn put(
-        &mut self,
-        id: u16,
-        mut obstacle: Obstacle<S, D>,
-        age: S,
-        ageing: &Ageing<S>,
-    ) -> Result<(), TableFull> {
+    pub fn put(&mut self, id: u16, mut obstacle: Obstacle<S, D>, age: S, ageing: &Ageing<S>) -> Result<(), TableFull> {
         let age = age.max(S::zero()).min(ageing.hold);
         if age > S::zero() {
             obstacle.carry(age);

@@ -116,7 +116,9 @@ fn print_report(report: &Report) {
     for Upserts { core, scalar, dimension, room, scene, median, p99, worst, longest_piece: piece, .. } in
         &report.upserts
     {
-        say!("  {core:10}  {scalar:6}  {dimension:>3}  {room:>4}  {scene:10}  {median:>8}  {p99:>8}  {worst:>8}  {piece:>8}");
+        say!(
+            "  {core:10}  {scalar:6}  {dimension:>3}  {room:>4}  {scene:10}  {median:>8}  {p99:>8}  {worst:>8}  {piece:>8}"
+        );
     }
     for b in &report.bits {
         let (same, ticks) = (if b.equal() { "the same bits as" } else { "OTHER BITS than" }, b.ticks);
