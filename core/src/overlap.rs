@@ -4,10 +4,12 @@ use crate::obstacle::Obstacle;
 use crate::shape::{Shape, root};
 use crate::{Matrix, Scalar, Vector, norm, unit};
 
-/// Steps of the search for a point that several cores have in common.
-const STEPS: u8 = 48;
-/// After so many it ends where it is inside, unless it is to get as deep as it can.
-const STEPS_WELL: u8 = 16;
+/// Steps of the search for a point that several cores have in common, and how much shorter each is than the one before: as deep as it gets,
+const STEPS: (u8, f64) = (48, 0.9);
+/// and where a point inside will do.
+const STEPS_INSIDE: (u8, f64) = (24, 0.82);
+/// Of those, after so many it ends where it is inside.
+const STEPS_WELL: u8 = 12;
 /// Halvings of the interval in which two ellipsoids have their common point.
 const HALVINGS: u8 = 26;
 /// Halvings of the way to where such a search starts.
@@ -44,7 +46,7 @@ impl<'a, S: Scalar, const D: usize> Inside<'a, S, D> {
 }
 
 /// How deep inside a point is to be.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Depth {
     /// Inside: the first point that is will do.
     Any,
@@ -109,8 +111,8 @@ pub(crate) fn between<S: Scalar, const D: usize>(
     }
     // What sticks into a wall need not do so along the wall's normal, nor overlap on the way between the centres.
     let members = [a, b];
-    let mut search = Search::new(&members, &start);
-    while search.step(&members, depth) {}
+    let mut search = Search::new(&members, &start, depth);
+    while search.step(&members) {}
     search.found()
 }
 
@@ -121,17 +123,20 @@ pub(crate) struct Search<S: Scalar, const D: usize> {
     best: Option<(S, Vector<S, D>)>,
     /// The length of the next step, m.
     step: S,
+    shrink: S,
     left: u8,
+    depth: Depth,
 }
 
 impl<S: Scalar, const D: usize> Search<S, D> {
-    pub fn new(members: &[Inside<'_, S, D>], start: &Vector<S, D>) -> Self {
+    pub fn new(members: &[Inside<'_, S, D>], start: &Vector<S, D>, depth: Depth) -> Self {
         let step = members.iter().fold(S::MAX, |m, o| m.min(o.obstacle().outer()));
-        Self { x: *start, best: None, step, left: STEPS }
+        let (left, shrink) = if depth == Depth::Most { STEPS } else { STEPS_INSIDE };
+        Self { x: *start, best: None, step, shrink: S::from_f64(shrink), left, depth }
     }
 
     /// One step; is there another? The members are the same for all.
-    pub fn step(&mut self, members: &[Inside<'_, S, D>], depth: Depth) -> bool {
+    pub fn step(&mut self, members: &[Inside<'_, S, D>]) -> bool {
         let Some(left) = self.left.checked_sub(1) else { return false };
         self.left = 0;
         let x = &self.x;
@@ -142,7 +147,7 @@ impl<S: Scalar, const D: usize> Search<S, D> {
             self.best = Some((gamma, *x));
         }
         let inside = self.best.as_ref().is_some_and(|(least, _)| *least < S::one());
-        if gamma < depth.enough() || inside && depth == Depth::Well && left < STEPS - STEPS_WELL {
+        if gamma < self.depth.enough() || inside && self.depth == Depth::Well && left < STEPS_INSIDE.0 - STEPS_WELL {
             return false;
         }
         let (length, away) = unit(&member.obstacle().outward(&slope));
@@ -151,7 +156,7 @@ impl<S: Scalar, const D: usize> Search<S, D> {
         }
         // A shrinking step: the maximum of convex functions has no other descent that is as simple.
         self.x -= away * self.step;
-        self.step *= S::from_f64(0.9);
+        self.step *= self.shrink;
         self.left = left;
         left > 0
     }

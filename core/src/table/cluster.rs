@@ -199,7 +199,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Clusters<S, D, CAP> {
             Some([Inside::Sight(a), Inside::Sight(b)]) if !is_polygon(a) && !is_polygon(b) => {
                 overlap::between(Inside::Core(a), Inside::Core(b), Depth::Most).map_or(Next::Tree, Next::Shared)
             }
-            Some(members) => Next::Search(Search::new(members, &amidst(members))),
+            Some(members) => Next::Search(Search::new(members, &amidst(members), Depth::Most)),
         };
         self.go_on(cluster, next, entries);
     }
@@ -238,7 +238,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Clusters<S, D, CAP> {
                 let (mut gammas, mut more) = (0, true);
                 while more && gammas < GAMMAS {
                     gammas += members.len();
-                    more = search.step(members, Depth::Most);
+                    more = search.step(members);
                 }
                 if more { Next::Search(search) } else { search.found().map_or(Next::Tree, Next::Shared) }
             }
