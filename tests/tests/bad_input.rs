@@ -160,6 +160,15 @@ fn demonstrations() {
         ("text.mat", b"this is no MATLAB file", &["text.mat"]),
         ("other.mat", &zeros, &["other.mat", "demos"]),
         ("what.xyz", b"?", &["what.xyz"]),
+        ("back.csv", b"t,x,y\n0,1,0\n1,0.5,0\n0.5,0,0\n", &["back.csv", "line 4", "goes back from 1 to 0.5"]),
+        ("inf.csv", b"t,x,y,vx,vy\n0,1,0,0,0\n1,0,0,inf,0\n", &["inf.csv", "line 3", "vx"]),
+        ("far.csv", b"t,x,y\n0,5000,0\n1,2500,0\n2,0,0\n", &["far.csv", "1000 m", "--unit"]),
+        ("huge.csv", b"t,x,y\n0,1e308,0\n1,-1e308,0\n2,0,0\n", &["huge.csv"]),
+        ("rubbish.csv", &[0xff, 0x00, 0x80, 0x0a], &["rubbish.csv", "line 1"]),
+        ("empty.mat", b"", &["empty.mat", "no MATLAB v5 header"]),
+        ("empty.npz", b"", &["empty.npz", "no ZIP archive"]),
+        ("rubbish.npz", &[0xff, 0x00, 0x80, 0x0a], &["rubbish.npz", "no ZIP archive"]),
+        ("ends.csv", b"t,x,y\n0,1,0\n1,0,0\n0,1,0\n1,0,0.5\n", &["ends.csv, demonstration", "mean end point"]),
     ];
     for (name, bytes, words) in cases {
         folder.write(name, bytes);
@@ -170,7 +179,161 @@ fn demonstrations() {
     folder.write("b.csv", "t,x,y,z\n0,0.3,0.2,0\n0.5,0.2,0.1,0\n1,0,0,0\n");
     refused(&folder, &["learn", "a.csv", "b.csv"], &["b.csv"]);
     refused(&folder, &["learn", "nowhere.csv"], &["nowhere.csv"]);
+    refused(&folder, &["learn", "."], &["back.csv"]);
     refused(&folder, &["learn"], &["DEMO"]);
+}
+
+/// A motion of a second: `samples` rows, lengths times `factor`.
+fn motion(samples: usize, factor: f64) -> String {
+    let row = |i: usize| {
+        let s = i as f64 / (samples - 1) as f64;
+        let fade = factor * (1.0 - s) * (1.0 - s);
+        format!("{s},{},{}\n", 0.3 * fade * (3.0 * s).cos(), 0.2 * fade)
+    };
+    (0..samples).fold("t,x,y\n".to_owned(), |text, i| text + &row(i))
+}
+
+/// Exit 0, and the words in a warning on stderr and in the object on stdout.
+fn warned(folder: &Folder, arguments: &[&str], words: &[&str]) {
+    let mut with_json = arguments.to_vec();
+    with_json.push("--json");
+    let ended = folder.run(&with_json);
+    assert_eq!(ended.code, Some(0), "{arguments:?}: {}", ended.stderr);
+    let warnings = ended.json()["warnings"].as_array().unwrap().clone();
+    let warnings: String = warnings.iter().map(|w| format!("warning: {}\n", w.as_str().unwrap())).collect();
+    for word in words {
+        assert!(warnings.contains(word), "{arguments:?} does not say `{word}`:\n{warnings}");
+    }
+    assert!(ended.stderr.contains(&warnings), "{}", ended.stderr);
+}
+
+#[test]
+fn what_a_person_may_have_meant_is_a_warning() {
+    let folder = Folder::new("warned");
+    let learn =
+        |file: &str, words: &[&str]| warned(&folder, &["learn", file, "-o", "m.toml", "--components", "2"], words);
+    folder.write("large.csv", motion(200, 100.0));
+    learn("large.csv", &["m across", "--unit"]);
+    folder.write("small.csv", motion(200, 0.001));
+    learn("small.csv", &["m across"]);
+    let rest: String = (1..60).map(|i| format!("{},0,0\n", 1.0 + f64::from(i) * 0.01)).collect();
+    folder.write("rest.csv", motion(100, 1.0) + &rest);
+    learn("rest.csv", &["stands still"]);
+    let twice: String = motion(100, 1.0).lines().skip(1).map(|l| format!("{l}\n{l}\n")).collect();
+    folder.write("twice.csv", "t,x,y\n".to_owned() + &twice);
+    learn("twice.csv", &["100 of 200 samples repeat"]);
+    folder.write("ends.csv", motion(100, 1.0) + "0,0.3,0.2\n0.5,0.1,0.1\n1,0,0.02\n");
+    learn("ends.csv", &["from the mean end point"]);
+    let slow: String = motion(100, 1.0).lines().skip(1).map(|l| format!("{l},0,0\n")).collect();
+    folder.write("velocity.csv", "t,x,y,vx,vy\n".to_owned() + &slow.replace(",0,0\n", ",-0.001,-0.001\n"));
+    learn("velocity.csv", &["velocities are"]);
+    // The same file in its unit says nothing.
+    folder.write("mm.csv", motion(200, 1000.0));
+    let ended = folder.run(&["learn", "mm.csv", "--unit", "mm", "-o", "m.toml", "--components", "2"]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+}
+
+#[test]
+fn a_million_samples_are_learnt_from() {
+    let folder = Folder::new("million");
+    folder.write("a.csv", motion(1_000_000, 1.0));
+    let ended = folder.run(&["learn", "a.csv", "-o", "m.toml", "--components", "2", "--json"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert_eq!(folder.run(&["check", "m.toml"]).code, Some(0));
+}
+
+const FOREIGN: &str = "name: test\nK: 1.0\nM: 2.0\nPriors: [1.0]\nMu: [0.1, 0.2]\nSigma: [0.01, 0.0, 0.0, 0.02]
+A: [-1.0, -3.5, 0.5, -1.0]\nattractor: [0.0, 0.5]\nx0_all: [0.4, 0.4]\n";
+
+#[test]
+fn models_of_other_tools() {
+    let folder = Folder::new("import");
+    folder.write("good.yml", FOREIGN);
+    let ended = folder.run(&["import", "good.yml", "-o", "m.toml", "--json"]);
+    assert_eq!((ended.code, ended.json()["lyapunov"].as_str()), (Some(0), Some("found")), "{}", ended.stderr);
+    assert_eq!(folder.run(&["check", "m.toml"]).code, Some(0));
+    let cases: &[(&str, &str, &[&str])] = &[
+        ("Sigma: [0.01", "Sigma: [x", &["bad.yml, line 6", "Sigma", "`x`"]),
+        ("Priors: [1.0]", "Priors: [1.0, 2.0]", &["bad.yml, line 4", "Priors", "2 numbers"]),
+        ("attractor", "atractor", &["bad.yml", "attractor", "missing"]),
+        ("A: [-1.0", "A: [9.0", &["bad.yml", "component 1", "certified"]),
+        ("A: [", "B: [", &["bad.yml", "`A`"]),
+        ("M: 2.0", "M: [", &["bad.yml"]),
+    ];
+    for (from, to, words) in cases {
+        assert!(FOREIGN.contains(from), "{from}");
+        folder.write("bad.yml", FOREIGN.replacen(from, to, 1));
+        refused(&folder, &["import", "bad.yml", "-o", "none.toml"], words);
+    }
+    folder.write("bad.json", [0xff, 0xfe]);
+    refused(&folder, &["import", "bad.json"], &["bad.json, line 1", "UTF-8"]);
+    refused(&folder, &["import", "missing.yml"], &["missing.yml"]);
+    refused(&folder, &["import", "m.toml"], &["m.toml", ".json"]);
+    assert!(!folder.0.join("none.toml").exists());
+}
+
+#[test]
+fn skills_are_moved_and_added_to() {
+    let folder = Folder::new("again");
+    folder.write("a.csv", motion(200, 1.0));
+    folder.write("b.csv", motion(150, 1.1));
+    let good = |arguments: &[&str]| {
+        let mut all = arguments.to_vec();
+        all.push("--json");
+        let ended = folder.run(&all);
+        assert_eq!(ended.code, Some(0), "{arguments:?}: {}", ended.stderr);
+        ended.json()
+    };
+    good(&["learn", "a.csv", "-o", "m.toml", "--components", "2"]);
+    let moved = good(&["move", "m.toml", "-o", "moved.toml", "--attractor", "0.2,-0.1", "--start", "0.5,0.4"]);
+    assert_eq!(moved["attractor"][1], -0.1);
+    good(&["check", "moved.toml"]);
+    // Rollouts begin where they are told to.
+    let start = moved["starts"][0].as_array().unwrap().clone();
+    assert!((start[0].as_f64().unwrap() - 0.5).abs() < 1e-6 && (start[1].as_f64().unwrap() - 0.4).abs() < 1e-6);
+
+    let both = good(&["learn", "b.csv", "--add-to", "m.toml", "--components", "2"]);
+    assert_eq!((both["demonstrations"].as_u64(), both["warnings"].as_array().unwrap().len()), (Some(2), 0));
+    let text = fs::read_to_string(folder.0.join("m.toml")).unwrap();
+    assert!(text.contains("a.csv") && text.contains("b.csv"), "{text}");
+    // The same as learning from both at once.
+    let at_once = good(&["learn", "a.csv", "b.csv", "-o", "once.toml", "--components", "2"]);
+    assert_eq!(at_once["rmse_m_s"], both["rmse_m_s"]);
+
+    fs::remove_file(folder.0.join("a.csv")).unwrap();
+    warned(
+        &folder,
+        &["learn", "b.csv", "--add-to", "m.toml", "-o", "n.toml", "--components", "2"],
+        &["a.csv", "is gone"],
+    );
+}
+
+#[test]
+fn moves_that_cannot_be() {
+    let folder = Folder::new("move");
+    fs::copy(root().join("models/sbend.toml"), folder.0.join("m.toml")).unwrap();
+    let text = fs::read_to_string(folder.0.join("m.toml")).unwrap();
+    folder.write("bare.toml", &text[..text.find("[learnt]").unwrap()]);
+    let cases: &[(&[&str], &[&str])] = &[
+        (&["--attractor", "1,2,3"], &["attractor has 3 numbers"]),
+        (&["--attractor", "1;2"], &["X,Y"]),
+        (&["--attractor", "1e9,0"], &["attractor", "1000"]),
+        (&["--scale", "0"], &["scale", "0.001 to 1000"]),
+        (&["--scale", "NaN"], &["scale"]),
+        (&["--turn", "inf"], &["turn"]),
+        (&["--start", "0,0", "--from", "1,0"], &["new start", "attractor"]),
+        (&["--start", "1,0", "--scale", "2"], &["--scale"]),
+    ];
+    for (options, words) in cases {
+        let mut arguments = vec!["move", "m.toml", "-o", "none.toml"];
+        arguments.extend_from_slice(options);
+        refused(&folder, &arguments, words);
+    }
+    refused(&folder, &["move", "bare.toml", "-o", "none.toml", "--start", "1,0"], &["bare.toml", "--from"]);
+    refused(&folder, &["move", "missing.toml", "-o", "none.toml"], &["missing.toml"]);
+    folder.write("a.csv", motion(100, 1.0));
+    refused(&folder, &["learn", "a.csv", "--add-to", "bare.toml"], &["bare.toml", "no demonstration can be added"]);
+    assert!(!folder.0.join("none.toml").exists());
 }
 
 #[test]

@@ -158,4 +158,48 @@ mod tests {
             prop_assert_eq!(positive_definite(&m, 0.0), m[(0, 0)] > 0.0 && two > 0.0 && three > 0.0);
         }
     }
+
+    /// A and P in S with the largest eigenvalue of A'P + PA near `edge`, and whether the check accepts them.
+    fn on_the_edge<S: Scalar>(
+        l: [f64; 3],
+        r: [f64; 2],
+        skew: f64,
+        edge: f64,
+    ) -> (Matrix<f64, 2>, Matrix<f64, 2>, bool) {
+        let root = Matrix::<f64, 2>::new(l[0], 0.0, l[1], l[2]);
+        let p = (root * root.transpose()).map(S::from_f64);
+        let exact = p.map(S::to_f64);
+        let fall = Matrix::<f64, 2>::new(r[0] * r[0], r[0] * r[1] - skew, r[0] * r[1] + skew, r[1] * r[1]);
+        let inverse = Matrix::<f64, 2>::new(exact[(1, 1)], -exact[(0, 1)], -exact[(1, 0)], exact[(0, 0)])
+            / (exact[(0, 0)] * exact[(1, 1)] - exact[(0, 1)] * exact[(1, 0)]);
+        let a = (inverse * (Matrix::<f64, 2>::identity() * (edge * 0.5) - fall)).map(S::from_f64);
+        (a.map(S::to_f64), exact, decreases(&a, &p, S::zero()))
+    }
+
+    /// The larger eigenvalue, in f64: its own error is a millionth of what f32 and fixed point round away.
+    fn largest(a: &Matrix<f64, 2>, p: &Matrix<f64, 2>) -> f64 {
+        let m = a.transpose() * p + p * a;
+        let (mean, half) = ((m[(0, 0)] + m[(1, 1)]) * 0.5, (m[(0, 0)] - m[(1, 1)]) * 0.5);
+        mean + libm::hypot(half, m[(0, 1)])
+    }
+
+    proptest! {
+        /// Within a few roundings of the edge, what is accepted is negative definite; well inside, a skill is accepted.
+        #[test]
+        fn nothing_is_accepted_that_rounding_made(
+            l in prop::array::uniform3(0.3..1.5f64), r in prop::array::uniform2(-2.0..2.0f64), skew in -5.0..5.0f64, edge in -1.0..1.0f64,
+        ) {
+            for unit in [1e-3, 1e-4, 1e-5, 1e-6, 1e-7] {
+                let (a, p, accepted) = on_the_edge::<f32>(l, r, skew, edge * unit);
+                prop_assert!(!accepted || largest(&a, &p) < 0.0);
+                let (a, p, accepted) = on_the_edge::<crate::Fixed>(l, r, skew, edge * unit);
+                prop_assert!(!accepted || largest(&a, &p) < 0.0);
+            }
+            // As round as what is learnt: fixed point has room for it.
+            if l[0] > 0.6 && l[2] > 0.6 && l[1] < 0.8 {
+                prop_assert!(on_the_edge::<f32>(l, r, skew, -0.05).2);
+                prop_assert!(on_the_edge::<crate::Fixed>(l, r, skew, -0.05).2);
+            }
+        }
+    }
 }

@@ -118,7 +118,12 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
         let mut sum = S::zero();
         let mut velocity = Vector::<S, D>::zeros();
         for (depth, c) in depths.iter().zip(&self.components) {
-            let gamma = ((least - *depth) * S::from_f64(32.0)).exp();
+            let exponent = (least - *depth) * S::from_f64(32.0);
+            // e^-40 of the sum is less than the sum's rounding, also in f64.
+            if exponent < S::from_f64(-40.0) {
+                continue;
+            }
+            let gamma = exponent.exp();
             sum += gamma;
             velocity += times(&c.a, &offset) * gamma;
         }

@@ -4,7 +4,7 @@
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
-    if let Ok(items) = pliant::learn::lasa::read("fuzz.mat", bytes) {
+    if let Ok(items) = pliant::learn::read::lasa::read("fuzz.mat", bytes) {
         for item in &items {
             assert!(item.t.is_sorted() && item.t.len() >= 2);
             assert!(item.x.iter().flatten().all(|c| c.is_finite()));

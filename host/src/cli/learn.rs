@@ -5,23 +5,29 @@ use std::time::Instant;
 
 use serde_json::json;
 
-use super::{Finished, print_json, progress};
+use super::{Finished, print_json, progress, warn};
 use crate::error::Outcome;
-use crate::learn::{Options, Unit, learn};
+use crate::learn::{Demonstrations, Learnt, Options, Unit, learn_from, memory, read};
+use crate::model::{ModelFile, Skill};
+use pliant_core::Scalar;
 
 /// Options of `pliant learn`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Args {
-    /// Demonstrations of one skill: .mat (LASA), .csv with header t,x,y[,z], folders of them.
+    /// Demonstrations of one skill: .mat (LASA), .npz, .csv with header t,x,y[,z], folders of them.
     #[arg(required = true, value_name = "DEMO")]
     demos: Vec<PathBuf>,
-    /// Where to write the model (NAME.toml in the working folder, by the first demonstration's name, if not given).
+    /// Add them to those this model was learnt from, and learn it anew.
+    #[arg(long, value_name = "MODEL.toml")]
+    add_to: Option<PathBuf>,
+    /// Where to write the model (if not given: the model that is added to, or else NAME.toml in the working folder, by the first
+    /// demonstration's name).
     #[arg(short, long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
-    /// Unit of lengths in the files: mm, cm or m (.mat: cm, so that LASA handwriting is ten times its size; .csv: m).
+    /// Unit of lengths in the files: mm, cm or m (.mat: cm, so that LASA handwriting is ten times its size; .csv, .npz: m).
     #[arg(long)]
     unit: Option<Unit>,
-    /// Number of components, 1 to 16 (chosen from 1 to 8 if not given).
+    /// Number of components, 1 to 16 (chosen if not given).
     #[arg(long, value_name = "K")]
     components: Option<usize>,
     /// Seed of all random choices.
@@ -30,12 +36,58 @@ pub struct Args {
     /// Guaranteed rate of convergence, 1/s.
     #[arg(long, default_value_t = Options::default().sigma)]
     sigma: f64,
+    /// Weight of being on time on the path against being on it, 0 to 10.
+    #[arg(long, default_value_t = Options::default().pace)]
+    pace: f64,
+}
+
+/// Part of the extent up to which a path error is small, or too large.
+const CLOSE: f64 = 0.02;
+const ROUGH: f64 = 0.05;
+/// A pace that far from the demonstrators' is worth a word.
+const OFF_PACE: f64 = 0.15;
+
+/// How good the skill is, and what to do if it is not: a sentence each.
+fn verdict(learnt: &Learnt) -> Vec<String> {
+    let (q, extent) = (&learnt.quality, learnt.demonstrations.extent());
+    let percent = |length: f64| format!("{:.1} % of its size", 100.0 * length / extent);
+    let mut says = vec![match q.path_error / extent {
+        error if error <= CLOSE => "it follows the demonstrations closely".into(),
+        error if error <= ROUGH => {
+            format!("it follows the demonstrations roughly, {} beside them", percent(q.path_error))
+        }
+        _ => format!("it strays from the demonstrations by {}", percent(q.path_error)),
+    }];
+    if q.converged < q.rollouts {
+        let stranded = q.rollouts - q.converged;
+        says.push(format!("{stranded} rollouts take longer than ten times their demonstration: raise --sigma"));
+    }
+    if learnt.gives_way > CLOSE * extent {
+        says.push(format!(
+            "the demonstrations move away from their goal on the way, by {} more than a certificate allows: demonstrate a more direct way, \
+             or two skills with a goal in between",
+            percent(learnt.gives_way)
+        ));
+    } else if q.path_error > ROUGH * extent {
+        says.push("look at the figure: do the demonstrations cross themselves, or show two different motions?".into());
+        if learnt.demonstrations.items().len() < 3 {
+            says.push("more demonstrations allow more components".into());
+        }
+    }
+    if (q.pace - 1.0).abs() > OFF_PACE {
+        let word = if q.pace > 1.0 { "longer" } else { "shorter" };
+        says.push(format!(
+            "it takes {:.2} times as long as the demonstrator, so {word}: raise --pace to keep time",
+            q.pace
+        ));
+    }
+    says
 }
 
 pub(super) fn main(args: &Args, json: bool) -> Finished {
     let stem =
         args.demos.first().and_then(|p| p.file_stem()).map_or("skill".into(), |s| s.to_string_lossy().to_lowercase());
-    let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.toml")));
+    let out = args.out.clone().or(args.add_to.clone()).unwrap_or_else(|| PathBuf::from(format!("{stem}.toml")));
     let name = out.file_stem().map_or(stem, |s| s.to_string_lossy().into_owned());
     let options = Options {
         name,
@@ -43,21 +95,38 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         components: args.components,
         seed: args.seed,
         sigma: args.sigma,
+        pace: args.pace,
         ..Options::default()
     };
+    let new = read::recordings(&args.demos, args.unit)?;
+    let (demonstrations, mut sources) = match &args.add_to {
+        None => (Demonstrations::new(new)?, vec![]),
+        Some(old) => memory::with(&ModelFile::read(old)?, old, new)?,
+    };
+    let complete = args.add_to.is_none() || !sources.is_empty();
+    sources.extend(args.demos.iter().map(|path| memory::Source { path: path.clone(), unit: args.unit }));
+    warn(demonstrations.warnings());
     let bar = progress::bar(json);
     bar.set_message("learning");
     let begin = Instant::now();
-    let learnt = learn(&args.demos, &options, &|done| bar.set_position((done * 1000.0) as u64))?;
+    let mut learnt = learn_from(demonstrations, &options, &|done| bar.set_position((done * 1000.0) as u64))?;
     let seconds = begin.elapsed().as_secs_f64();
     bar.finish_and_clear();
+    // Where the old demonstrations are gone, the new files alone are not what it was learnt from.
+    let sources = if complete { &sources[..] } else { &[] };
+    memory::note(&mut learnt.model, &out, sources, &learnt.demonstrations.starts());
     learnt.model.write(&out)?;
+    let warnings: Vec<_> = learnt.demonstrations.warnings().iter().map(ToString::to_string).collect();
+    let margin = match learnt.model.skill::<f32>()? {
+        Skill::Planar(ds) => ds.certificate().rate.to_f64(),
+        Skill::Spatial(ds) => ds.certificate().rate.to_f64(),
+    };
     let (k, q, demonstrations) = (learnt.model.component.len(), &learnt.quality, learnt.demonstrations.items().len());
     if json {
         print_json(&json!({
             "name": learnt.model.name, "model": out, "dimension": learnt.model.dimension, "k": k, "demonstrations": demonstrations,
-            "rmse_m_s": q.rmse, "e_dot": q.e_dot, "dtwd_m": q.dtwd, "path_error_m": q.path_error,
-            "converged": q.converged, "rollouts": q.rollouts, "certified": true, "seconds": seconds,
+            "rmse_m_s": q.rmse, "e_dot": q.e_dot, "dtwd_m": q.dtwd, "path_error_m": q.path_error, "pace": q.pace, "margin": margin, "verdict": verdict(&learnt),
+            "converged": q.converged, "rollouts": q.rollouts, "certified": true, "seconds": seconds, "warnings": warnings,
         }));
     } else {
         say!(
@@ -70,7 +139,11 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
             q.e_dot,
             q.path_error * 1e3
         );
+        say!("  certified rate {margin:.3} 1/s, rounding included; {:.2} times the demonstrators' time", q.pace);
         say!("  {} of {} rollouts from the demonstrations' starts arrive", q.converged, q.rollouts);
+        for sentence in verdict(&learnt) {
+            say!("  {sentence}");
+        }
         say!("  model: {}", out.display());
     }
     Ok(Outcome::Success)

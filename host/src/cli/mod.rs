@@ -13,10 +13,13 @@ macro_rules! say {
 mod bench;
 mod check;
 mod eval;
+mod import;
 mod learn;
 mod plot;
 mod progress;
+mod relocate;
 mod run;
+mod study;
 
 use std::io::Write;
 use std::path::Path;
@@ -44,14 +47,20 @@ struct Cli {
 enum Command {
     /// Drive a simulated robot through a scene with a device's velocities (the built-in scene if none is given).
     Run(run::Args),
-    /// Learn a skill from demonstrations: .mat (LASA), .csv, folders of them.
+    /// Learn a skill from demonstrations: .mat (LASA), .npz, .csv, folders of them.
     Learn(learn::Args),
+    /// Import a model that another tool has learnt, with a certificate: .yml (ds-opt), .json (lpvds).
+    Import(import::Args),
+    /// Move a skill to another goal or start, make it larger, turn it: with its certificate.
+    Move(relocate::Args),
     /// Check a model's stability certificate in the precision that will run.
     Check(check::Args),
     /// Evaluate the velocity at the points of a CSV file.
     Eval(eval::Args),
     /// Draw a scene: streamlines, hard and soft regions, trajectories.
     Plot(plot::Args),
+    /// Run the paper's studies and experiments again: tables, figures, and whether its claims hold.
+    Study(study::Args),
     /// Measure how long the method takes: here, or in instructions on emulated boards.
     Bench(bench::Args),
 }
@@ -73,9 +82,12 @@ pub fn main() -> ExitCode {
     let result = match cli.command.unwrap_or_else(|| Command::Run(run::Args::default())) {
         Command::Run(args) => run::main(&args, json),
         Command::Learn(args) => learn::main(&args, json),
+        Command::Import(args) => import::main(&args, json),
+        Command::Move(args) => relocate::main(&args, json),
         Command::Check(args) => check::main(&args, json),
         Command::Eval(args) => eval::main(&args, json),
         Command::Plot(args) => plot::main(&args, json),
+        Command::Study(args) => study::main(&args, json),
         Command::Bench(args) => bench::main(&args, json),
     };
     crate::error::report(result, json)
@@ -95,6 +107,29 @@ fn scene(path: Option<&Path>) -> Result<Scene, Error> {
 /// Prints to standard output; whoever closed it does not want to know.
 fn print(text: &str) {
     let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+/// Tells a person what may not be as it was meant.
+fn warn<W: std::fmt::Display>(warnings: &[W]) {
+    for warning in warnings {
+        let _ = writeln!(std::io::stderr(), "warning: {warning}");
+    }
+}
+
+/// A point on the command line: numbers with commas between.
+#[derive(Clone, Debug, PartialEq)]
+struct Point(Vec<f64>);
+
+impl std::str::FromStr for Point {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|c| c.trim().parse()).collect();
+        match numbers {
+            Ok(p) if (2..=3).contains(&p.len()) && p.iter().all(|c: &f64| c.is_finite()) => Ok(Self(p)),
+            _ => Err("allowed is X,Y or X,Y,Z, numbers with commas between and no spaces".into()),
+        }
+    }
 }
 
 /// Prints the one JSON object.

@@ -74,12 +74,6 @@ impl Programme {
         self.constants.push(value.constant);
     }
 
-    /// value = 0
-    pub fn zero(&mut self, value: Affine) {
-        self.row(value);
-        self.cones.push(SupportedConeT::ZeroConeT(1));
-    }
-
     /// [a c; c b] >= 0
     fn semidefinite_2(&mut self, a: &Affine, b: &Affine, c: &Affine) {
         self.row(a.plus(b, 1.0));

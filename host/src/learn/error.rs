@@ -14,13 +14,13 @@ pub enum LearnError {
         source: io::Error,
     },
     /// The name of the file says nothing about its format.
-    #[error("{file}: unknown format; demonstrations are .mat or .csv files, or folders of them")]
+    #[error("{file}: unknown format; demonstrations are .mat, .npz or .csv files, or folders of them")]
     UnknownFormat {
         /// Path as given.
         file: String,
     },
     /// A folder without demonstrations, or no path at all.
-    #[error("{file}: no demonstrations here; .mat or .csv files are needed")]
+    #[error("{file}: no demonstrations here; .mat, .npz or .csv files are needed")]
     NoDemonstrations {
         /// Path as given.
         file: String,
@@ -31,14 +31,28 @@ pub enum LearnError {
         /// Path as given.
         file: String,
         /// What is wrong with the bytes.
-        reason: super::mat::MatError,
+        reason: super::read::mat::MatError,
     },
-    /// A MATLAB file, but not one of demonstrations.
-    #[error("{file}: `{field}` {problem}; allowed is {allowed}")]
-    MatShape {
+    /// The bytes are not a NumPy archive this reader understands.
+    #[error("{file}: not a readable .npz archive: {reason}")]
+    NotNpz {
         /// Path as given.
         file: String,
-        /// Variable or field, such as `demos{3}.pos`.
+        /// What is wrong with the bytes.
+        reason: super::read::zip::ZipError,
+    },
+    /// A file larger than a recording of demonstrations is.
+    #[error("{file}: it is larger than 512 MiB; thin it out, a few hundred samples a second are plenty")]
+    TooLarge {
+        /// Path as given.
+        file: String,
+    },
+    /// A MATLAB file or NumPy archive, but not one of demonstrations.
+    #[error("{file}: `{field}` {problem}; allowed is {allowed}")]
+    Field {
+        /// Path as given.
+        file: String,
+        /// Variable, array or field, such as `demos{3}.pos`.
         field: String,
         /// What is wrong with it.
         problem: String,
@@ -89,6 +103,16 @@ pub enum LearnError {
         value: String,
         /// Its range.
         allowed: &'static str,
+    },
+    /// A model to which a demonstration cannot be added.
+    #[error(
+        "{model}: no demonstration can be added: {problem}, and it does not say where its motions begin; learn from all demonstrations at once"
+    )]
+    Forgotten {
+        /// Path of the model.
+        model: String,
+        /// Why.
+        problem: String,
     },
     /// The convex programme found no motion.
     #[error("no stable motion could be fitted: {reason}")]

@@ -152,6 +152,25 @@ pub fn fit<const D: usize>(samples: &Samples<D>, k: usize, direction: f64, seed:
         .map(|(mixture, _)| mixture)
 }
 
+/// The mixture of labelled samples; labels without enough samples give no component.
+pub fn labelled<const D: usize>(x: &[SVector<f64, D>], label: &[usize], k: usize) -> Option<Mixture<D>> {
+    let (mut priors, mut means, mut covariances) = (vec![], vec![], vec![]);
+    for j in 0..k {
+        let mine = || x.iter().zip(label).filter(|(_, l)| **l == j).map(|(x, _)| x);
+        let count = mine().count();
+        if count <= D {
+            continue;
+        }
+        let mean = mine().fold(SVector::zeros(), |s: SVector<f64, D>, x| s + x) / count as f64;
+        let spread = mine().fold(SMatrix::<f64, D, D>::zeros(), |s, x| s + (x - mean) * (x - mean).transpose());
+        let covariance = spread / count as f64 + SMatrix::identity() * FLOOR;
+        priors.push(count as f64 / x.len() as f64);
+        means.push(mean);
+        covariances.push((covariance + covariance.transpose()) * 0.5);
+    }
+    Mixture::new(priors, means, covariances)
+}
+
 /// k-means++ seeds and a few rounds of k-means, on position and weighted direction. Returns the label of each sample.
 fn k_means<const D: usize>(x: &[SVector<f64, D>], u: &[SVector<f64, D>], k: usize, rng: &mut ChaCha8Rng) -> Vec<usize> {
     let distance =

@@ -1,39 +1,43 @@
 //! Learning a skill from demonstrations.
 //!
-//! Files are read and checked ([`read`]), brought to one attractor, and normalised. For each number of components a
+//! Files are read and checked ([`read()`]), brought to one attractor, and normalised. For each number of components a
 //! Gaussian mixture is fitted, then P and A_k under the certificate; the number that follows the demonstrations
 //! best for its size is kept ([`learn`]). The result is a [`ModelFile`], rounded to f32 so that every machine runs the
 //! same numbers, with its certificate checked on them.
 
+mod candidate;
+mod cleaning;
 mod cone;
-pub mod csv;
 pub mod demonstration;
 mod error;
 pub mod evaluate;
+mod field;
 pub mod fit;
 pub mod gmm;
-pub mod lasa;
-pub mod mat;
-#[cfg(test)]
-mod mat_writer;
+pub mod memory;
 pub mod quality;
+pub mod read;
+mod reference;
+mod refine;
 mod smoothing;
+mod warning;
 
 pub use demonstration::{Demonstration, Demonstrations, Unit};
 pub use error::LearnError;
 pub use quality::Quality;
+pub use read::read;
+pub use warning::Warning;
 
-use crate::model::{ComponentFile, FORMAT, ModelFile};
+use crate::model::{ComponentFile, FORMAT, ModelFile, rounded};
+use candidate::{Candidate, Grouping, Lesson};
 use evaluate::Motion;
-use gmm::{MAX_COMPONENTS, Mixture, Samples};
+use gmm::{MAX_COMPONENTS, Mixture};
 use nalgebra::{SMatrix, SVector};
-use std::fs;
-use std::path::{Path, PathBuf};
+use pliant_core::Fixed;
+use std::path::PathBuf;
 
-/// Most components tried when their number is not given.
-const MOST_TRIED: usize = 8;
-/// Samples used for fitting; more add time and little else.
-const FIT_SAMPLES: usize = 1000;
+/// Samples of a demonstration used for fitting; more add time and little else.
+const TRACK_SAMPLES: usize = 200;
 
 /// How to learn.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,7 +47,7 @@ pub struct Options {
     /// Unit of lengths in the files. Without it: centimetres for .mat (LASA handwriting at ten times its size),
     /// metres for .csv.
     pub unit: Option<Unit>,
-    /// Number of components, 1 to 16; chosen from 1 to 8 where not given.
+    /// Number of components, 1 to 16; chosen where not given.
     pub components: Option<usize>,
     /// Seed of all random choices.
     pub seed: u64,
@@ -51,11 +55,21 @@ pub struct Options {
     pub sigma: f64,
     /// Weight of the direction of motion against position (in extents) when samples are grouped.
     pub direction_weight: f64,
+    /// Weight of being on time on the path, against being on it, 0 to 10.
+    pub pace: f64,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { name: "skill".into(), unit: None, components: None, seed: 1, sigma: 0.1, direction_weight: 1.0 }
+        Self {
+            name: "skill".into(),
+            unit: None,
+            components: None,
+            seed: 1,
+            sigma: 0.01,
+            direction_weight: 1.0,
+            pace: 0.1,
+        }
     }
 }
 
@@ -66,58 +80,11 @@ pub struct Learnt {
     pub model: ModelFile,
     /// How well it follows the demonstrations.
     pub quality: Quality,
-    /// Quality for each number of components tried.
-    pub tried: Vec<(usize, Quality)>,
+    /// How far the demonstrations had to give way so that V falls along them, m, the mean over samples: no skill with a certificate of this
+    /// kind follows them closer.
+    pub gives_way: f64,
     /// What it was learnt from, in metres and ending at the attractor.
     pub demonstrations: Demonstrations,
-}
-
-/// Reads the demonstrations of one skill from files and folders of them, in metres.
-pub fn read(paths: &[PathBuf], unit: Option<Unit>) -> Result<Demonstrations, LearnError> {
-    let mut items = Vec::new();
-    for path in paths {
-        let file = path.display().to_string();
-        if !path.exists() {
-            return Err(LearnError::Unreadable { file, source: std::io::ErrorKind::NotFound.into() });
-        }
-        if path.is_dir() {
-            let unreadable = |source| LearnError::Unreadable { file: file.clone(), source };
-            let mut inside = Vec::new();
-            for entry in fs::read_dir(path).map_err(unreadable)? {
-                let entry = entry.map_err(unreadable)?.path();
-                if matches!(extension(&entry).as_str(), "mat" | "csv") {
-                    inside.push(entry);
-                }
-            }
-            if inside.is_empty() {
-                return Err(LearnError::NoDemonstrations { file });
-            }
-            inside.sort();
-            for entry in inside {
-                items.extend(read_file(&entry, unit)?);
-            }
-        } else {
-            items.extend(read_file(path, unit)?);
-        }
-    }
-    Demonstrations::new(items)
-}
-
-fn extension(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
-}
-
-fn read_file(path: &Path, unit: Option<Unit>) -> Result<Vec<Demonstration>, LearnError> {
-    type Reader = fn(&str, &[u8]) -> Result<Vec<Demonstration>, LearnError>;
-    let file = path.display().to_string();
-    let (reader, default): (Reader, Unit) = match extension(path).as_str() {
-        "mat" => (lasa::read, Unit::Cm),
-        "csv" => (csv::read, Unit::M),
-        _ => return Err(LearnError::UnknownFormat { file }),
-    };
-    let bytes = fs::read(path).map_err(|source| LearnError::Unreadable { file: file.clone(), source })?;
-    let factor = unit.unwrap_or(default).metres();
-    Ok(reader(&file, &bytes)?.into_iter().map(|d| d.scaled(factor)).collect())
 }
 
 /// Learns a skill from files and folders. `progress` is told the part that is done, 0 to 1.
@@ -143,6 +110,9 @@ pub fn learn_from(
     if !(0.0..=10.0).contains(&options.direction_weight) {
         return refuse("direction_weight", options.direction_weight.to_string(), "0 to 10");
     }
+    if !(0.0..=10.0).contains(&options.pace) {
+        return refuse("pace", options.pace.to_string(), "0 to 10");
+    }
     match demonstrations.dimension() {
         2 => learn_in::<2>(demonstrations, options, progress),
         _ => learn_in::<3>(demonstrations, options, progress),
@@ -157,19 +127,12 @@ struct Scale<const D: usize> {
 }
 
 impl<const D: usize> Scale<D> {
-    fn of(demonstrations: &Demonstrations, all: &Samples<D>) -> Self {
-        let squares: f64 = all.v.iter().map(|v| v.norm_squared()).sum();
-        let speed = (squares / all.v.len().max(1) as f64).sqrt();
+    fn of(demonstrations: &Demonstrations, recordings: &[quality::Recording<D>]) -> Self {
+        let squares: f64 = recordings.iter().flat_map(|r| &r.v).map(|v| v.norm_squared()).sum();
+        let speed = (squares / demonstrations.samples().max(1) as f64).sqrt();
         let attractor = SVector::from_column_slice(demonstrations.attractor().as_slice());
         // A recording with velocities of zero throughout still has a scale.
         Self { attractor, length: demonstrations.extent(), speed: if speed > 0.0 { speed } else { 1.0 } }
-    }
-
-    fn normalise(&self, samples: &Samples<D>) -> Samples<D> {
-        Samples {
-            x: samples.x.iter().map(|x| (x - self.attractor) / self.length).collect(),
-            v: samples.v.iter().map(|v| v / self.speed).collect(),
-        }
     }
 }
 
@@ -177,15 +140,23 @@ fn fixed<const D: usize>(all: &[nalgebra::DVector<f64>]) -> Vec<SVector<f64, D>>
     all.iter().map(|p| SVector::from_column_slice(p.as_slice())).collect()
 }
 
-/// Every demonstration's samples, thinned to about `limit` in all.
-fn samples<const D: usize>(demonstrations: &Demonstrations, limit: usize) -> Samples<D> {
-    let stride = demonstrations.samples().div_ceil(limit).max(1);
-    let mut out = Samples { x: vec![], v: vec![] };
-    for item in demonstrations.items() {
-        out.x.extend(fixed::<D>(&item.x).into_iter().step_by(stride));
-        out.v.extend(fixed::<D>(&item.v).into_iter().step_by(stride));
-    }
-    out
+/// What is tried where the number of components is not given. The last ones only where all before are poor.
+const ATTEMPTS: [(usize, Grouping); 5] = [
+    (6, Grouping::Segments),
+    (12, Grouping::Mixture),
+    (12, Grouping::Segments),
+    (14, Grouping::Segments),
+    (16, Grouping::Segments),
+];
+/// A score that leaves something to wish for.
+const POOR: f64 = 6.0;
+/// What a component has to gain: a device evaluates every one in every tick.
+const PRICE: f64 = 0.01;
+
+/// Components that this many demonstrations can speak for: a stroke has about twenty numbers to give, a component takes ten.
+fn most_components(demonstrations: &Demonstrations) -> usize {
+    let samples = demonstrations.samples() / (2 * (demonstrations.dimension() + 1));
+    (2 + 2 * demonstrations.items().len()).min(samples).clamp(1, MAX_COMPONENTS)
 }
 
 fn learn_in<const D: usize>(
@@ -193,72 +164,95 @@ fn learn_in<const D: usize>(
     options: &Options,
     progress: &dyn Fn(f64),
 ) -> Result<Learnt, LearnError> {
-    let all = samples::<D>(&demonstrations, usize::MAX);
-    let paths: Vec<_> = demonstrations.items().iter().map(|d| (fixed::<D>(&d.x), d.duration())).collect();
-    let scale = Scale::of(&demonstrations, &all);
-    let normal = scale.normalise(&samples(&demonstrations, FIT_SAMPLES));
-
-    let candidates = match options.components {
-        Some(k) => k..=k,
-        None => 1..=MOST_TRIED.min(normal.x.len() / (D + 1)).max(1),
+    let recordings = recordings::<D>(&demonstrations);
+    let scale = Scale::of(&demonstrations, &recordings);
+    let tracks = tracks(&recordings, &scale);
+    let most = most_components(&demonstrations);
+    let attempts: Vec<_> = match options.components {
+        Some(k) => vec![(k, Grouping::Mixture), (k, Grouping::Segments)],
+        None => ATTEMPTS.map(|(k, grouping)| (k.min(most), grouping)).to_vec(),
     };
-    let count = candidates.clone().count() as f64;
-    let mut tried = Vec::new();
-    let mut best: Option<(f64, ModelFile, Quality)> = None;
+    progress(0.0);
+    let sigma = options.sigma * scale.length / scale.speed;
+    let lesson = Lesson {
+        shown: &tracks,
+        p: reference::search(&tracks, sigma),
+        sigma,
+        direction: options.direction_weight,
+        pace: options.pace,
+        seed: options.seed,
+    };
+    let mut best: Option<(f64, ModelFile)> = None;
     let mut failure = String::from("no mixture fits the samples");
-    for (i, k) in candidates.enumerate() {
-        progress(i as f64 / count);
-        let Some(mixture) = gmm::fit(&normal, k, options.direction_weight, options.seed) else { continue };
-        let model = match model_of(&normal, &mixture, &scale, options) {
-            Ok(model) => model,
-            Err(reason) => {
-                failure = reason;
-                continue;
-            }
-        };
-        let Some(motion) = motion_of::<D>(&model) else { continue };
-        let quality = quality::measure(&motion, &all, &paths, demonstrations.extent());
-        tried.push((mixture.len(), quality));
-        let score = score(&quality, mixture.len(), demonstrations.extent(), scale.speed);
-        if best.as_ref().is_none_or(|b| score < b.0) {
-            best = Some((score, model, quality));
+    for (i, &(k, grouping)) in attempts.iter().enumerate() {
+        if attempts[..i].contains(&(k, grouping)) || i > 2 && best.as_ref().is_some_and(|b| b.0 < POOR) {
+            continue;
         }
+        if let Some(candidate) = lesson.attempt(k, grouping) {
+            let score = candidate.score * (1.0 + PRICE * candidate.mixture.len() as f64);
+            if best.as_ref().is_none_or(|b| score < b.0) {
+                match model_of(candidate, sigma, &scale, options) {
+                    Ok(model) => best = Some((score, model)),
+                    Err(reason) => failure = reason,
+                }
+            }
+        }
+        progress((i + 1) as f64 / (attempts.len() + 1) as f64);
     }
-    let Some((_, mut model, quality)) = best else { return Err(LearnError::Fit { reason: failure }) };
+    let Some((_, mut model)) = best else { return Err(LearnError::Fit { reason: failure }) };
+    let Some(motion) = motion_of::<D>(&model) else { return Err(LearnError::Fit { reason: failure }) };
+    let quality = quality::measure(&motion, &recordings, demonstrations.extent());
     model.learnt = Some(provenance(options, &demonstrations, &quality));
     model.validate()?;
     progress(1.0);
-    Ok(Learnt { model, quality, tried, demonstrations })
+    let away: Vec<f64> = tracks.iter().flat_map(|t| reference::follow(t, &lesson.p, sigma).1).collect();
+    let gives_way = scale.length * away.iter().sum::<f64>() / away.len().max(1) as f64;
+    Ok(Learnt { model, quality, gives_way, demonstrations })
 }
 
-/// What a number of components is judged by: errors relative to the skill, with a price a component, and a rollout that
-/// does not arrive counts more than any error.
-fn score(quality: &Quality, components: usize, extent: f64, speed: f64) -> f64 {
-    let stranded = (quality.rollouts - quality.converged) as f64;
-    let error = quality.rmse / speed + 5.0 * quality.path_error / extent;
-    10.0 * stranded + error * (1.0 + 0.03 * components as f64)
-}
-
-/// Fits P and A_k, rounds to f32 and checks the certificate on the rounded numbers.
+/// Rounds to f32 and checks the certificate on the rounded numbers.
 fn model_of<const D: usize>(
-    normal: &Samples<D>,
-    mixture: &Mixture<D>,
+    candidate: Candidate<D>,
+    sigma: f64,
     scale: &Scale<D>,
     options: &Options,
 ) -> Result<ModelFile, String> {
-    let sigma = options.sigma * scale.length / scale.speed;
+    let Candidate { field, mixture, .. } = candidate;
+    let mut fit = fit::Stable { p: field.p, a: field.parts.iter().map(|c| c.a).collect(), error: 0.0 };
     let mut strictness = sigma;
-    let mut fit = fit::fit(normal, mixture, sigma)?;
+    let mut floating = None;
     for _ in 0..6 {
-        let model = denormalise(&fit, mixture, scale, options);
+        fit::repair(&mut fit, strictness).ok_or("the inequality cannot be met")?;
+        let model = denormalise(&fit, &mixture, scale, options);
         if model.certified::<f32>() && model.certified::<f64>() {
-            return Ok(model);
+            if model.certified::<Fixed>() {
+                return Ok(model);
+            }
+            floating = floating.or(Some(model));
         }
         // Rounding used up the margin: ask for more.
-        strictness += 0.05;
-        fit::repair(&mut fit, strictness).ok_or("the inequality cannot be met")?;
+        strictness += 0.02;
     }
-    Err("the certificate does not survive rounding to f32".into())
+    // Very slow or very large, a skill may have no room in fixed point; in f32 it must hold.
+    floating.ok_or("the certificate does not survive rounding to f32".into())
+}
+
+fn recordings<const D: usize>(demonstrations: &Demonstrations) -> Vec<quality::Recording<D>> {
+    let one = |d: &Demonstration| quality::Recording { t: d.t.clone(), x: fixed(&d.x), v: fixed(&d.v) };
+    demonstrations.items().iter().map(one).collect()
+}
+
+fn tracks<const D: usize>(recordings: &[quality::Recording<D>], scale: &Scale<D>) -> Vec<reference::Track<D>> {
+    recordings
+        .iter()
+        .map(|r| {
+            let stride = r.x.len().div_ceil(TRACK_SAMPLES).max(1);
+            let x = r.x.iter().map(|x| (x - scale.attractor) / scale.length).step_by(stride).collect();
+            let v = r.v.iter().map(|v| v / scale.speed).step_by(stride).collect();
+            let t = r.t.iter().map(|t| (t - r.t[0]) * scale.speed / scale.length).step_by(stride).collect();
+            reference::Track { x, v, t }
+        })
+        .collect()
 }
 
 fn denormalise<const D: usize>(
@@ -292,12 +286,6 @@ fn denormalise<const D: usize>(
     }
 }
 
-/// The shortest decimal that is the nearest f32: short to read, and the same on every machine.
-fn rounded(x: f64) -> f64 {
-    let nearest = x as f32 + 0.0;
-    format!("{nearest:e}").parse().unwrap_or(f64::from(nearest))
-}
-
 /// The motion of a model in f64, for the dimension D; `None` where the model is of another dimension or not valid.
 pub fn motion_of<const D: usize>(model: &ModelFile) -> Option<Motion<D>> {
     if model.dimension != D || model.validate().is_err() {
@@ -318,9 +306,8 @@ pub fn motion_of<const D: usize>(model: &ModelFile) -> Option<Motion<D>> {
 /// How well any model follows any demonstrations; `None` where their dimensions differ.
 pub fn evaluate(model: &ModelFile, demonstrations: &Demonstrations) -> Option<Quality> {
     fn inside<const D: usize>(model: &ModelFile, demonstrations: &Demonstrations) -> Option<Quality> {
-        let paths: Vec<_> = demonstrations.items().iter().map(|d| (fixed::<D>(&d.x), d.duration())).collect();
-        let all = samples(demonstrations, usize::MAX);
-        Some(quality::measure(&motion_of::<D>(model)?, &all, &paths, demonstrations.extent()))
+        let paths = recordings::<D>(demonstrations);
+        Some(quality::measure(&motion_of::<D>(model)?, &paths, demonstrations.extent()))
     }
     match (model.dimension, demonstrations.dimension()) {
         (2, 2) => inside::<2>(model, demonstrations),
@@ -340,6 +327,7 @@ fn provenance(options: &Options, demonstrations: &Demonstrations, quality: &Qual
         ("rmse", float(quality.rmse)),
         ("e_dot", float(quality.e_dot)),
         ("dtwd", float(quality.dtwd)),
+        ("pace", float(quality.pace)),
         ("path_error", float(quality.path_error)),
         ("converged", integer(quality.converged)),
     ]

@@ -1,7 +1,6 @@
 //! How well a motion follows the demonstrations.
 
 use super::evaluate::Motion;
-use super::gmm::Samples;
 use nalgebra::SVector;
 
 /// Points that paths are resampled to before they are compared.
@@ -10,11 +9,15 @@ const POINTS: usize = 200;
 const WINDOW: usize = 20;
 /// A rollout has arrived within this part of the extent.
 const NEAR: f64 = 0.01;
+/// Rollouts start at this sample of a recording of a thousand: before it the hand hardly moves.
+const START: usize = 20;
+/// Samples a demonstration is judged at: every fifth of a thousand.
+const JUDGED: usize = 200;
 
 /// Figures of merit, all in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quality {
-    /// Root mean square of the velocity error at the samples, m/s.
+    /// Velocity error, m/s: the mean over samples of the root of the mean over axes of its square.
     pub rmse: f64,
     /// Mean of 1 - cos of the angle between demonstrated and learnt velocity.
     pub e_dot: f64,
@@ -23,52 +26,88 @@ pub struct Quality {
     pub dtwd: f64,
     /// The same alignment, as the mean distance of aligned points, m.
     pub path_error: f64,
+    /// The rollouts' time over the demonstrations' to come within a tenth of the way of the attractor; the mean over demonstrations.
+    pub pace: f64,
     /// Rollouts that came within one percent of the extent of the attractor.
     pub converged: usize,
     /// All rollouts: one a demonstration.
     pub rollouts: usize,
 }
 
-/// Compares a motion with demonstrations, each a list of positions and a duration.
-pub fn measure<const D: usize>(
-    motion: &Motion<D>,
-    samples: &Samples<D>,
-    demonstrations: &[(Vec<SVector<f64, D>>, f64)],
-    extent: f64,
-) -> Quality {
-    let (mut squares, mut turn, mut moving) = (0.0, 0.0, 0usize);
-    for (x, v) in samples.x.iter().zip(&samples.v) {
-        let f = motion.velocity(x);
-        squares += (f - v).norm_squared();
-        let size = f.norm() * v.norm();
-        // Where one of them stands still there is no direction to compare.
-        if size > 0.0 {
-            turn += 1.0 - f.dot(v) / size;
-            moving += 1;
-        }
+/// One demonstration.
+#[derive(Debug, Clone)]
+pub struct Recording<const D: usize> {
+    /// Times, s.
+    pub t: Vec<f64>,
+    /// Positions, m.
+    pub x: Vec<SVector<f64, D>>,
+    /// Velocities, m/s.
+    pub v: Vec<SVector<f64, D>>,
+}
+
+impl<const D: usize> Recording<D> {
+    /// Every n-th sample is judged, so that there are about 200.
+    pub fn stride(&self) -> usize {
+        self.x.len().div_ceil(JUDGED).max(1)
     }
-    let (mut dtwd, mut path_error, mut converged) = (0.0, 0.0, 0);
-    for (path, duration) in demonstrations {
+
+    /// Index of the sample where rollouts start: the 20th of a thousand, as far in shorter recordings.
+    pub fn start(&self) -> usize {
+        ((START - 1) * self.x.len() / 1000).min(START - 1)
+    }
+
+    /// Seconds from where rollouts start to the end.
+    pub fn duration(&self) -> f64 {
+        self.t[self.t.len() - 1] - self.t[self.start()]
+    }
+}
+
+/// Compares a motion with demonstrations.
+pub fn measure<const D: usize>(motion: &Motion<D>, recordings: &[Recording<D>], extent: f64) -> Quality {
+    let (mut error, mut turn, mut count, mut moving) = (0.0, 0.0, 0usize, 0usize);
+    let (mut dtwd, mut path_error, mut pace, mut converged) = (0.0, 0.0, 0.0, 0);
+    for r in recordings {
+        for (x, v) in r.x.iter().zip(&r.v).step_by(r.stride()) {
+            let f = motion.velocity(x);
+            error += ((f - v).norm_squared() / D as f64).sqrt();
+            count += 1;
+            let size = f.norm() * v.norm();
+            // Where one of them stands still there is no direction to compare.
+            if size > 0.0 {
+                turn += 1.0 - f.dot(v) / size;
+                moving += 1;
+            }
+        }
+        let path = &r.x[r.start()..];
+        let duration = r.duration();
         // Long enough for what is slow, and not for what stands.
-        let (rollout, arrived) = motion.rollout(&path[0], duration / 400.0, 10.0 * duration, NEAR * extent);
+        let dt = duration / 400.0;
+        let (rollout, arrived) = motion.rollout(&path[0], dt, 10.0 * duration, NEAR * extent);
         converged += usize::from(arrived);
         let (sum, mean) = warping_distance(&resample(path), &resample(&rollout));
         dtwd += sum;
         path_error += mean;
+        let near = 0.1 * (path[0] - motion.attractor).norm();
+        // The last time a demonstration is farther than that; a path may pass near its end on the way.
+        let reached = path.iter().rposition(|x| (x - motion.attractor).norm() >= near).map_or(1, |i| i + 1);
+        let taken = rollout.iter().rposition(|x| (x - motion.attractor).norm() >= near).map_or(1, |i| i + 1);
+        let demonstrated = r.t[(r.start() + reached).min(r.t.len() - 1)] - r.t[r.start()];
+        pace += if demonstrated > 0.0 { taken as f64 * dt / demonstrated } else { 1.0 };
     }
-    let n = demonstrations.len().max(1) as f64;
+    let n = recordings.len().max(1) as f64;
     Quality {
-        rmse: (squares / samples.x.len().max(1) as f64).sqrt(),
+        rmse: error / count.max(1) as f64,
         e_dot: turn / moving.max(1) as f64,
         dtwd: dtwd / n,
         path_error: path_error / n,
+        pace: pace / n,
         converged,
-        rollouts: demonstrations.len(),
+        rollouts: recordings.len(),
     }
 }
 
 /// Points at equal steps along a path.
-fn resample<const D: usize>(path: &[SVector<f64, D>]) -> Vec<SVector<f64, D>> {
+pub fn resample<const D: usize>(path: &[SVector<f64, D>]) -> Vec<SVector<f64, D>> {
     let mut length = vec![0.0];
     for pair in path.windows(2) {
         length.push(length[length.len() - 1] + (pair[1] - pair[0]).norm());
@@ -90,7 +129,7 @@ fn resample<const D: usize>(path: &[SVector<f64, D>]) -> Vec<SVector<f64, D>> {
 }
 
 /// Sum and mean of distances along the best alignment within the window.
-fn warping_distance<const D: usize>(a: &[SVector<f64, D>], b: &[SVector<f64, D>]) -> (f64, f64) {
+pub fn warping_distance<const D: usize>(a: &[SVector<f64, D>], b: &[SVector<f64, D>]) -> (f64, f64) {
     let mut row = vec![(f64::INFINITY, 0usize); b.len()];
     for (i, p) in a.iter().enumerate() {
         let before = row.clone();

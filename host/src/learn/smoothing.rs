@@ -16,9 +16,9 @@ pub fn velocities(t: &[f64], x: &[DVector<f64>], half: usize) -> Vec<DVector<f64
         .collect()
 }
 
-/// Half width that smooths hand tremor and leaves the strokes: about a twentieth of the motion, never long.
+/// Half width that smooths hand tremor and leaves the strokes: a twentieth of the motion in all, whatever the rate.
 pub fn half_width(samples: usize) -> usize {
-    (samples / 40).clamp(1, 8)
+    (samples / 40).max(1)
 }
 
 fn slope(t: &[f64], x: &[DVector<f64>], at: f64) -> Option<DVector<f64>> {

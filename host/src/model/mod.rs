@@ -3,9 +3,11 @@
 mod convert;
 mod error;
 mod locate;
+mod transform;
 
 pub use convert::Skill;
 pub use error::{FieldError, ModelFileError};
+pub use transform::{Similarity, SimilarityError};
 
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -122,6 +124,12 @@ impl ModelFile {
         }
         Ok(())
     }
+}
+
+/// The shortest decimal that is the nearest f32: short to read, and the same on every machine.
+pub fn rounded(x: f64) -> f64 {
+    let nearest = x as f32 + 0.0;
+    format!("{nearest:e}").parse().unwrap_or(f64::from(nearest))
 }
 
 type Check = Result<(), (String, &'static str)>;

@@ -148,11 +148,16 @@ fn reference_points_are_checked() {
 
     let own = scene(vec![disc(0.0, 0.0), disc(1.7, 0.0), disc(3.4, 0.0)]);
     let cluster = &clusters(&own).unwrap().unwrap()[0];
-    let with = |references: [[f64; 2]; 3]| {
+    let leaning = |references: [[f64; 2]; 3], hubs: [Option<[f64; 2]>; 3]| {
         let mut scene = own.clone();
         scene.obstacles.iter_mut().zip(references).for_each(|(o, r)| o.reference = r.to_vec());
+        for (n, hub) in hubs.iter().enumerate() {
+            lean(&mut scene, n, hub.as_ref().map(|place| place.as_slice())).unwrap();
+        }
         cluster.check(&own, &scene)
     };
+    let root = Some([1.7, 0.0]);
+    let with = |references| leaning(references, [root, None, root]);
     // From the overlap at 0.7 to 1 towards the root's centre, as far as 0.8 of the square of the child's radius.
     let deep = 0.8_f64.sqrt();
     assert_eq!(with([[deep, 0.0], [0.0, 0.0], [-deep, 0.0]]), Ok(()));
@@ -163,4 +168,8 @@ fn reference_points_are_checked() {
     // The root has to keep its own, a child to be with its parent.
     assert!(with([[deep, 0.0], [0.1, 0.0], [-deep, 0.0]]).is_err());
     assert!(with([[0.5, 0.0], [0.0, 0.0], [-deep, 0.0]]).is_err());
+    // Both children lean towards the root.
+    let own_references = [[deep, 0.0], [0.0, 0.0], [-deep, 0.0]];
+    assert!(leaning(own_references, [root, None, None]).is_err());
+    assert!(leaning(own_references, [root, None, Some([1.7, 0.1])]).is_err());
 }

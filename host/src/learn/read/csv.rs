@@ -1,20 +1,14 @@
-//! Demonstrations from CSV: a header `t,x,y` or `t,x,y,z`, with an optional column `demo`.
+//! Demonstrations from CSV: a header `t,x,y` or `t,x,y,z`, with optional columns `vx,vy[,vz]` and `demo`.
 //!
 //! With a `demo` column, a new demonstration starts where its value changes. Without one, it starts where time returns
 //! to the file's first time or before it. Any other step back in time is an error.
 
-use super::demonstration::Demonstration;
-use super::error::LearnError;
+use super::split::Splitter;
+use crate::learn::demonstration::Demonstration;
+use crate::learn::error::LearnError;
 use nalgebra::DVector;
 
-const HEADER: &str = "t,x,y or t,x,y,z in any order, with an optional column demo";
-
-/// Rows of one demonstration, as they are read.
-#[derive(Default)]
-struct Rows {
-    t: Vec<f64>,
-    x: Vec<DVector<f64>>,
-}
+const HEADER: &str = "t,x,y or t,x,y,z, separated by commas, in any order, with vx,vy[,vz] and demo if there are any";
 
 /// Reads the demonstrations of one file. `name` is used in messages and in [`Demonstration::name`].
 pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Demonstration>, LearnError> {
@@ -30,10 +24,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Demonstration>, LearnError> 
     let columns =
         Columns::find(&header).ok_or_else(|| fail(1, format!("the header is `{}`", join(&header)), HEADER))?;
 
-    let mut all: Vec<Rows> = Vec::new();
-    let mut current = Rows::default();
-    let mut label: Option<String> = None;
-    let mut start = f64::NAN;
+    let mut splitter = Splitter::default();
     for record in reader.records() {
         let record = record.map_err(broken)?;
         let line = record.position().map_or(0, csv::Position::line);
@@ -52,47 +43,27 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Demonstration>, LearnError> 
             }
             Ok(value)
         };
-        let t = number(columns.t)?;
-        let mut x = DVector::zeros(columns.axes.len());
-        for (c, &i) in x.iter_mut().zip(&columns.axes) {
-            *c = number(i)?;
-        }
-
-        let starts = match (columns.demo, current.t.last()) {
-            (Some(i), _) => {
-                let new = label.as_deref() != Some(&record[i]);
-                label = Some(record[i].to_owned());
-                new
+        let vector = |columns: &[usize]| -> Result<DVector<f64>, LearnError> {
+            let mut v = DVector::zeros(columns.len());
+            for (c, &i) in v.iter_mut().zip(columns) {
+                *c = number(i)?;
             }
-            (None, Some(&last)) => t < last && t <= start,
-            (None, None) => false,
+            Ok(v)
         };
-        if starts && !current.t.is_empty() {
-            all.push(std::mem::take(&mut current));
-        }
-        if all.is_empty() && current.t.is_empty() {
-            start = t;
-        }
-        if let (Some(&last), Some(before)) = (current.t.last(), current.x.last()) {
-            if t < last {
-                return Err(fail(line, format!("time goes back from {last} to {t}"), "time that increases"));
-            }
-            if t == last && *before != x {
-                let problem = format!("a second position at time {t}");
-                return Err(fail(line, problem, "one position a time"));
-            }
-        }
-        current.t.push(t);
-        current.x.push(x);
+        let (t, x) = (number(columns.t)?, vector(&columns.axes)?);
+        let v = columns.velocity.as_deref().map(vector).transpose()?;
+        splitter
+            .push(t, x, v, columns.demo.map(|i| &record[i]))
+            .map_err(|fault| fail(line, fault.problem(), fault.allowed()))?;
     }
-    all.push(current);
 
+    let all = splitter.finish();
     let count = all.len();
     all.into_iter()
         .enumerate()
         .map(|(i, rows)| {
             let title = if count == 1 { name.to_owned() } else { format!("{name}, demonstration {}", i + 1) };
-            Demonstration::new(title, rows.t, rows.x, None)
+            Demonstration::new(title, rows.t, rows.x, rows.v)
         })
         .collect()
 }
@@ -101,6 +72,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Demonstration>, LearnError> 
 struct Columns {
     t: usize,
     axes: Vec<usize>,
+    velocity: Option<Vec<usize>>,
     demo: Option<usize>,
 }
 
@@ -109,9 +81,13 @@ impl Columns {
         let at = |name: &str| header.iter().position(|h| h == name);
         let mut axes = vec![at("x")?, at("y")?];
         axes.extend(at("z"));
+        let velocities: Vec<_> = ["vx", "vy", "vz"].into_iter().filter_map(at).collect();
         let (t, demo) = (at("t")?, at("demo"));
         // Nothing else: an unknown column is more likely a misspelt one than one to ignore.
-        (header.len() == 1 + axes.len() + usize::from(demo.is_some())).then_some(Self { t, axes, demo })
+        let known = 1 + axes.len() + velocities.len() + usize::from(demo.is_some());
+        let complete = velocities.is_empty() || velocities.len() == axes.len();
+        let velocity = (!velocities.is_empty()).then_some(velocities);
+        (header.len() == known && complete).then_some(Self { t, axes, velocity, demo })
     }
 }
 
@@ -142,6 +118,14 @@ mod tests {
     fn three_dimensions_in_any_order_with_a_byte_order_mark() {
         let all = read("a.csv", "\u{feff}z,y,x,t\n3,2,1,0\n4,2,1,1\n".as_bytes()).expect("valid");
         assert_eq!(all[0].x[0].as_slice(), [1.0, 2.0, 3.0]);
+    }
+
+    #[test]
+    fn velocities_are_taken_where_they_are_given() {
+        let all = read("a.csv", b"t,x,y,vy,vx\n0,1,2,7,8\n1,3,4,5,6\n").expect("valid");
+        assert_eq!(all[0].v[0].as_slice(), [8.0, 7.0]);
+        assert!(refused("t,x,y,vx\n0,1,2,3\n").contains("line 1: the header"));
+        assert!(refused("t,x,y,vx,vy\n0,1,2,3,inf\n").contains("line 2: column vy is inf"));
     }
 
     #[test]

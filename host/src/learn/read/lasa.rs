@@ -1,8 +1,8 @@
 //! Demonstrations in the layout of the LASA handwriting set: a cell `demos` of structs with `pos`, `t` and `vel`.
 
-use super::demonstration::Demonstration;
-use super::error::LearnError;
 use super::mat::{self, Mat};
+use crate::learn::demonstration::Demonstration;
+use crate::learn::error::LearnError;
 use nalgebra::DVector;
 use std::collections::BTreeMap;
 
@@ -14,12 +14,8 @@ const T: &str = "a real vector of times in seconds, one a column of pos";
 /// Reads the demonstrations of one MATLAB file, in the unit of the file.
 pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Demonstration>, LearnError> {
     let mut variables = mat::read(bytes).map_err(|reason| LearnError::NotMat { file: name.to_owned(), reason })?;
-    let fail = |field: String, problem: String, allowed| LearnError::MatShape {
-        file: name.to_owned(),
-        field,
-        problem,
-        allowed,
-    };
+    let fail =
+        |field: String, problem: String, allowed| LearnError::Field { file: name.to_owned(), field, problem, allowed };
     let demos = match variables.remove("demos") {
         Some(Mat::Cell(cells)) => cells
             .into_iter()

@@ -1,0 +1,80 @@
+//! `pliant move`
+
+use std::path::PathBuf;
+
+use serde_json::json;
+
+use super::{Finished, Point, print_json};
+use crate::error::{Error, Outcome};
+use crate::learn::memory;
+use crate::model::{ModelFile, Similarity};
+
+/// Options of `pliant move`.
+#[derive(Clone, Debug, clap::Args)]
+#[command(allow_negative_numbers = true)]
+pub struct Args {
+    /// Model file.
+    model: PathBuf,
+    /// Where to write the moved model.
+    #[arg(short, long, value_name = "NEW.toml")]
+    out: PathBuf,
+    /// Where the motion is to end, m.
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
+    attractor: Option<Point>,
+    /// Where the motion is to begin, m: it is scaled and turned so that the old start comes to lie there.
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, conflicts_with_all = ["scale", "turn"])]
+    start: Option<Point>,
+    /// The old start, m (if not given: the mean of the demonstrations' starts, which the model remembers).
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, requires = "start")]
+    from: Option<Point>,
+    /// How many times as large it is to be, 0.001 to 1000.
+    #[arg(long, value_name = "FACTOR")]
+    scale: Option<f64>,
+    /// Turn it about the attractor, counter-clockwise, degrees.
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
+    turn: Option<f64>,
+    /// In space, the axis to turn about (z if not given).
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "turn")]
+    axis: Option<Point>,
+}
+
+pub(super) fn main(args: &Args, json: bool) -> Finished {
+    let model = ModelFile::read(&args.model)?;
+    let mut by = Similarity::identity(model.dimension);
+    if let Some(Point(attractor)) = &args.attractor {
+        by = by.to(attractor)?;
+    }
+    if let Some(Point(start)) = &args.start {
+        let from = args.from.clone().map(|p| p.0).or_else(|| memory::mean_start(&model)).ok_or_else(|| {
+            let message = format!("{}: it does not say where its motions begin", args.model.display());
+            Error::bad_input(message).with_help("give the old start by --from X,Y[,Z]")
+        })?;
+        by = by.with_start(&model, &from, start)?;
+    }
+    if let Some(factor) = args.scale {
+        by = by.scaled(factor)?;
+    }
+    if let Some(turn) = args.turn {
+        by = by.turned(turn.to_radians(), args.axis.as_ref().map(|p| p.0.as_slice()))?;
+    }
+    let mut moved = model.placed(&by)?;
+    let starts: Vec<_> = memory::starts(&model).iter().map(|p| by.place(&model.attractor, p)).collect();
+    let mut learnt = toml::Table::new();
+    let source = args.model.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    learnt.insert("moved".into(), toml::Value::String(source));
+    moved.learnt = Some(learnt);
+    memory::note(&mut moved, &args.out, &[], &starts);
+    moved.name = args.out.file_stem().map_or(model.name, |s| s.to_string_lossy().into_owned());
+    moved.write(&args.out)?;
+    if json {
+        print_json(&json!({
+            "name": moved.name, "model": args.out, "attractor": moved.attractor, "starts": starts, "scale": by.scale(),
+            "certified": true,
+        }));
+    } else {
+        let place = moved.attractor.iter().map(|c| format!("{c:.4}")).collect::<Vec<_>>().join(", ");
+        say!("{}: ends at ({place}), {:.4} times as large, certified in f32 and f64", moved.name, by.scale());
+        say!("  model: {}", args.out.display());
+    }
+    Ok(Outcome::Success)
+}

@@ -1,0 +1,146 @@
+//! One attempt at a model: grouped, fitted by a convex programme, refined.
+
+use super::evaluate::Motion;
+use super::field::Field;
+use super::fit::Gram;
+use super::gmm::{self, Mixture, Samples};
+use super::quality::{self, Quality, Recording};
+use super::reference::{Track, admissible, follow};
+use super::refine::{Task, Weights, refine};
+use nalgebra::{SMatrix, SVector};
+
+/// Reference paths and velocities fall a little faster than the rate asked for, so that they lie inside the certificate.
+const INSIDE: f64 = 1.1;
+/// A sample moved farther than this, in extents, is learnt in both places.
+const MOVED: f64 = 3e-3;
+/// Rounds of refinement: of velocities alone, with rollouts along the reference paths, with rollouts along what was shown.
+const ROUNDS: [usize; 3] = [20, 15, 10];
+/// Errors of the same weight, as parts of the extent, of the mean speed, and of one.
+const SAME_PATH: f64 = 0.02;
+const SAME_SPEED: f64 = 0.14;
+const SAME_DIRECTION: f64 = 0.034;
+
+/// How samples are grouped to start from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Grouping {
+    /// By a mixture over position and direction.
+    Mixture,
+    /// By how far along its demonstration a sample is, in length, turning and time.
+    Segments,
+}
+
+/// What every attempt at one skill shares, in normalised units.
+pub struct Lesson<'a, const D: usize> {
+    /// As demonstrated.
+    pub shown: &'a [Track<D>],
+    /// Of V.
+    pub p: SMatrix<f64, D, D>,
+    /// Rate of the certificate.
+    pub sigma: f64,
+    /// Weight of direction against position where a mixture groups.
+    pub direction: f64,
+    /// Share of being on time on the path.
+    pub pace: f64,
+    /// Of random choices.
+    pub seed: u64,
+}
+
+/// A refined model and what it is worth: less is better, about three for a good one.
+pub struct Candidate<const D: usize> {
+    /// The model.
+    pub field: Field<D>,
+    /// Its mixture.
+    pub mixture: Mixture<D>,
+    /// Its errors, in multiples of a good model's.
+    pub score: f64,
+}
+
+impl<const D: usize> Lesson<'_, D> {
+    /// Learns with this many components; `None` where no start works.
+    pub fn attempt(&self, components: usize, grouping: Grouping) -> Option<Candidate<D>> {
+        let rate = self.sigma * INSIDE;
+        let moved: Vec<_> = self.shown.iter().map(|t| follow(t, &self.p, rate)).collect();
+        let mut targets = Samples { x: vec![], v: vec![] };
+        let mut label = vec![];
+        for (track, (reference, away)) in self.shown.iter().zip(&moved) {
+            let segments = segments(reference, components);
+            for (i, (x, v)) in track.x.iter().zip(&track.v).enumerate() {
+                targets.x.push(*x);
+                targets.v.push(admissible(x, v, &self.p, rate));
+                label.push(segments[i]);
+                if away[i] > MOVED {
+                    targets.x.push(reference.x[i]);
+                    targets.v.push(reference.v[i]);
+                    label.push(segments[i]);
+                }
+            }
+        }
+        let mixture = match grouping {
+            Grouping::Segments => gmm::labelled(&targets.x, &label, components),
+            Grouping::Mixture => {
+                // A quarter of the samples says as well where they are.
+                let stride = targets.x.len().div_ceil(350).max(1);
+                let thin = |all: &[SVector<f64, D>]| all.iter().copied().step_by(stride).collect();
+                let few = Samples { x: thin(&targets.x), v: thin(&targets.v) };
+                gmm::fit(&few, components, self.direction, self.seed)
+            }
+        }?;
+        let start = Gram::new(&targets, &mixture).solve_for(&self.p, self.sigma, 2).ok()?;
+        let mut field = Field::new(&mixture, &start.p, &start.a, self.sigma)?;
+
+        let followed: Vec<_> = moved.into_iter().map(|m| m.0.after_start()).collect();
+        let shown: Vec<_> = self.shown.iter().map(Track::after_start).collect();
+        let weights = Weights { path: 0.0, pace: self.pace, ..Weights::default() };
+        let mut task = Task { x: &targets.x, v: &targets.v, tracks: &followed, weights };
+        field = improve(field, &task, ROUNDS[0]);
+        task.weights.path = Weights::default().path;
+        field = improve(field, &task, ROUNDS[1]);
+        // Near enough to follow through to the end, whatever happens on the way.
+        task.weights.leash = f64::INFINITY;
+        task.tracks = &shown;
+        field = improve(field, &task, ROUNDS[2]);
+
+        let mixture = field.mixture()?;
+        let motion = Motion {
+            attractor: SVector::zeros(),
+            mixture: mixture.clone(),
+            a: field.parts.iter().map(|c| c.a).collect(),
+        };
+        let recordings: Vec<_> =
+            self.shown.iter().map(|t| Recording { t: t.t.clone(), x: t.x.clone(), v: t.v.clone() }).collect();
+        let score = score(&quality::measure(&motion, &recordings, 1.0));
+        score.is_finite().then_some(Candidate { field, mixture, score })
+    }
+}
+
+fn improve<const D: usize>(field: Field<D>, task: &Task<D>, rounds: usize) -> Field<D> {
+    // In space P has five shape parameters in place of two, and its first guess is farther off.
+    if D == 2 { refine::<D, 10>(field, task, rounds) } else { refine::<D, 19>(field, task, 4 * rounds) }
+}
+
+/// Errors in multiples of a good model's, and a rollout that does not arrive counts more than any error.
+fn score(q: &Quality) -> f64 {
+    let stranded = (q.rollouts - q.converged) as f64;
+    q.path_error / SAME_PATH + q.rmse / SAME_SPEED + q.e_dot / SAME_DIRECTION + 100.0 * stranded
+}
+
+/// The number of the piece each sample is in, of `count` pieces alike in length, turning and time.
+fn segments<const D: usize>(track: &Track<D>, count: usize) -> Vec<usize> {
+    /// Turning, in radians, that counts as none.
+    const STRAIGHT: f64 = 0.3;
+    let n = track.x.len();
+    let pieces = |i: usize| {
+        let (a, b) = (track.v[i], track.v[i - 1]);
+        let size = a.norm() * b.norm();
+        let turn = if size > 0.0 { (a.dot(&b) / size).clamp(-1.0, 1.0).acos() } else { 0.0 };
+        ((track.x[i] - track.x[i - 1]).norm(), turn)
+    };
+    let (length, turning) = (1..n).map(pieces).fold((1e-12, STRAIGHT), |s, p| (s.0 + p.0, s.1 + p.1));
+    let mut along = vec![0.0; n];
+    for i in 1..n {
+        let (step, turn) = pieces(i);
+        along[i] = along[i - 1] + step / length + turn / turning + 1.0 / n as f64;
+    }
+    let total = along[n - 1].max(1e-12);
+    along.iter().map(|a| ((a / total * count as f64) as usize).min(count - 1)).collect()
+}
