@@ -23,7 +23,7 @@ proptest! {
 
 /// A line to the origin, beside the x axis by `y`, with a bow of `bow`; m.
 fn stroke(y: f64, bow: f64) -> Demonstration {
-    let t: Vec<f64> = (0..150).map(|i| f64::from(i) / 75.0).collect();
+    let t: Vec<f64> = (0..=150).map(|i| f64::from(i) / 75.0).collect();
     let place = |t: &f64| {
         let left = (1.0 - t / 2.0).powi(2) * (1.0 + t);
         DVector::from_row_slice(&[0.04 * left, y * left + bow * left * (1.0 - left)])
@@ -42,11 +42,12 @@ fn what_is_held_out_is_not_learnt_from() {
     let folds: Vec<Quality> = (0..5).map(|i| held_out(&all, i, &options).unwrap()).collect();
     let odd = folds[4].dtwd;
     assert!(folds[..4].iter().all(|q| q.rollouts == 1 && odd > 1.5 * q.dtwd), "{folds:?}");
-    // The same as learning from the others by hand: they end where all do.
+    // The same as learning from the others by hand, for all end in the origin; only where a rollout has arrived depends on the size of all.
     let learnt = crate::learn::learn_from(Demonstrations::new(alike).unwrap(), &options, &|_| {}).unwrap();
     let alone = Demonstrations::new(vec![stroke(0.004, -0.02)]).unwrap();
     let by_hand = crate::learn::evaluate(&learnt.model, &alone).unwrap();
-    assert!((by_hand.dtwd - odd).abs() < 0.02 * odd && (by_hand.rmse - folds[4].rmse).abs() < 1e-3 * by_hand.rmse);
+    assert_eq!((by_hand.rmse, by_hand.e_dot), (folds[4].rmse, folds[4].e_dot));
+    assert!((by_hand.dtwd - odd).abs() < 0.05 * odd, "{by_hand:?}, {odd}");
     assert!(held_out(&all, 5, &options).is_err() && held_out(&alone, 0, &options).is_err());
 }
 
