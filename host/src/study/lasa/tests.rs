@@ -41,7 +41,8 @@ fn what_is_held_out_is_not_learnt_from() {
     let options = Options::default();
     let folds: Vec<Quality> = (0..5).map(|i| held_out(&all, i, &options).unwrap()).collect();
     let odd = folds[4].dtwd;
-    assert!(folds[..4].iter().all(|q| q.rollouts == 1 && odd > 1.5 * q.dtwd), "{folds:?}");
+    // Where it was drawn, the others move elsewhere.
+    assert!(folds[..4].iter().all(|q| q.rollouts == 1 && folds[4].rmse > 2.0 * q.rmse), "{folds:?}");
     // The same as learning from the others by hand, for all end in the origin; only where a rollout has arrived depends on the size of all.
     let learnt = crate::learn::learn_from(Demonstrations::new(alike).unwrap(), &options, &|_| {}).unwrap();
     let alone = Demonstrations::new(vec![stroke(0.004, -0.02)]).unwrap();
