@@ -10,5 +10,6 @@ pub mod import;
 pub mod learn;
 pub mod model;
 pub mod plot;
+pub mod proof;
 pub mod scene;
 pub mod sim;
