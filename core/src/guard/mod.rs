@@ -13,7 +13,7 @@
 //! as seen from where the least violation leads are tried, without alpha. Where that fails too, the velocity that violates the worst inequality
 //! least is driven, and the status says so.
 //!
-//! What is exact: ellipsoids, boxes, cylinders, capsules, points of a scan, and polygons, whose triangles are convex. A wall's free space is
+//! What is exact: ellipsoids, boxes, cylinders, capsules, points of a scan, and polygons, by their convex pieces. A wall's free space is
 //! convex but for polygons; a half-space would let a step end outside of its curve, so it is moved inwards by what the curve can bend within
 //! one step.
 

@@ -19,6 +19,7 @@ mod plot;
 mod progress;
 mod relocate;
 mod run;
+mod study;
 
 use std::io::Write;
 use std::path::Path;
@@ -58,6 +59,8 @@ enum Command {
     Eval(eval::Args),
     /// Draw a scene: streamlines, hard and soft regions, trajectories.
     Plot(plot::Args),
+    /// Run the paper's studies and experiments again: tables, figures, and whether its claims hold.
+    Study(study::Args),
     /// Measure how long the method takes: here, or in instructions on emulated boards.
     Bench(bench::Args),
 }
@@ -84,6 +87,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::main(&args, json),
         Command::Eval(args) => eval::main(&args, json),
         Command::Plot(args) => plot::main(&args, json),
+        Command::Study(args) => study::main(&args, json),
         Command::Bench(args) => bench::main(&args, json),
     };
     crate::error::report(result, json)

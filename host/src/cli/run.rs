@@ -61,7 +61,8 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     let Robot::Point = args.robot;
     let scene = super::scene(args.scene.as_deref())?;
     let mut session = args.device.open()?;
-    let options = RunOptions { stepped: args.stepped, duration: args.duration, slow_link: args.device.is_slow() };
+    let slow_link = args.device.is_slow();
+    let options = RunOptions { stepped: args.stepped, duration: args.duration, slow_link, ..RunOptions::default() };
     let bar = progress::bar(json);
     let starts = scene.starts().len();
     let runs = run_scene(&mut session, &scene, &options, &mut |i, time, distance| {

@@ -50,6 +50,8 @@ pub struct Axes {
     pub size: Vector2<f64>,
     /// What is shown.
     pub extent: Extent,
+    /// Pixels from one tick to the next, about.
+    pub tick_every: f64,
 }
 
 /// A position on the page, px.
@@ -59,12 +61,12 @@ impl Axes {
     /// Axes `width` pixels wide with as much height as makes both directions the same scale.
     pub fn equal(corner: Pixel, width: f64, extent: Extent) -> Self {
         let size = extent.size();
-        Self { corner, size: Vector2::new(width, width * size.y / size.x), extent }
+        Self { corner, size: Vector2::new(width, width * size.y / size.x), extent, tick_every: TICK_EVERY }
     }
 
     /// Axes of a given size, each direction with its own scale.
     pub fn free(corner: Pixel, size: Vector2<f64>, extent: Extent) -> Self {
-        Self { corner, size, extent }
+        Self { corner, size, extent, tick_every: TICK_EVERY }
     }
 
     /// Pixels a unit of x is long.
@@ -128,20 +130,36 @@ impl Axes {
         }
     }
 
+    /// The same with ticks closer to each other, for a small plot.
+    pub fn with_close_ticks(self) -> Self {
+        Self { tick_every: CLOSE_TICKS, ..self }
+    }
+
     /// Room that the numbers and the name of y need on the left, px.
     pub fn left_room(extent: &Extent, height: f64) -> f64 {
-        let labels = ticks(extent.low.y, extent.high.y, height / TICK_EVERY);
+        Self::room(extent, height / TICK_EVERY)
+    }
+
+    /// The same for [close ticks](Self::with_close_ticks).
+    pub fn left_room_of_close_ticks(extent: &Extent, height: f64) -> f64 {
+        Self::room(extent, height / CLOSE_TICKS)
+    }
+
+    fn room(extent: &Extent, wanted: f64) -> f64 {
+        let labels = ticks(extent.low.y, extent.high.y, wanted);
         labels.iter().map(|t| text_width(&t.label)).fold(0.0, f64::max) + 28.0
     }
 
     fn ticks(&self) -> (Vec<Tick>, Vec<Tick>) {
         let Extent { low, high } = self.extent;
-        (ticks(low.x, high.x, self.size.x / TICK_EVERY), ticks(low.y, high.y, self.size.y / TICK_EVERY))
+        (ticks(low.x, high.x, self.size.x / self.tick_every), ticks(low.y, high.y, self.size.y / self.tick_every))
     }
 }
 
 /// Pixels from one tick to the next, about.
 const TICK_EVERY: f64 = 62.0;
+/// The same in a small plot.
+const CLOSE_TICKS: f64 = 40.0;
 
 /// A tick.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use super::figure::{Anchor, Axes, FONT_SIZE, Pixel, Svg, text_width, ticks};
 use super::panel::Panel;
 use super::style::{
     ARRIVED, ATTRACTOR, ATTRACTOR_TRACK, BEFORE, BEHIND_CASING, CLEARANCE, CLEARANCE_END, CORE, DOT, FLOW, FLOW_HEAD,
-    LINE_COLOUR, MARGIN, OVERLAP, SCAN, SCAN_POINT, SHELL, START, TRACK, speed_colour,
+    LINE_COLOUR, MARGIN, OVERLAP, REFERENCE, SCAN, SCAN_POINT, SHELL, START, TRACK, speed_colour,
 };
 
 /// The scale of speeds, right of the panels.
@@ -53,6 +53,7 @@ pub(super) fn draw(svg: &mut Svg, panels: &[&Panel<'_>], corner: Pixel, right: f
         (moving, "robot".into(), Box::new(|svg, p| svg.circle(p, 3.6, DOT))),
         (paths, path, Box::new(|svg, p| dash(svg, p, &stroke(3.2)))),
         (moving, "path at other times".into(), Box::new(|svg, p| dash(svg, p, &stroke(1.3)))),
+        (any(&|p| p.has_reference()), "path without obstacles".into(), Box::new(|svg, p| dash(svg, p, REFERENCE))),
         (
             any(&|p| p.has_hidden()),
             "path behind a core".into(),

@@ -10,7 +10,9 @@
 //! ```
 
 mod approach;
+pub mod chart;
 pub mod figure;
+mod gallery;
 mod ink;
 mod labels;
 mod legend;
@@ -27,10 +29,11 @@ mod view;
 use std::io;
 use std::path::Path;
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Point2, Vector2, Vector3};
 
 use crate::scene::{ConvertError, Scene};
 use figure::{Anchor, Axes, Svg};
+pub use gallery::{Tile, gallery};
 use panel::Panel;
 pub use streamlines::streamlines;
 pub use trajectory::{Trajectory, TrajectoryPoint, trajectories};
@@ -47,12 +50,16 @@ pub struct Options {
     pub streamlines: bool,
     /// Colour trajectories by their speed?
     pub speed: bool,
+    /// Show how near each trajectory comes to a core?
+    pub clearances: bool,
+    /// A path to compare with, m; drawn under the trajectories.
+    pub reference: Vec<Vector3<f64>>,
 }
 
 impl Default for Options {
     /// At time 0, 560 pixels wide, with everything.
     fn default() -> Self {
-        Self { time: 0.0, width: 560.0, streamlines: true, speed: true }
+        Self { time: 0.0, width: 560.0, streamlines: true, speed: true, clearances: true, reference: Vec::new() }
     }
 }
 

@@ -12,8 +12,8 @@ use super::paths::{self, Stroke};
 use super::seen::{Seen, track};
 use super::style::{
     ARRIVED, ATTRACTOR, ATTRACTOR_HEAD, ATTRACTOR_TRACK, BEFORE, BEFORE_INSIDE, CLEARANCE, CLEARANCE_CASING,
-    CLEARANCE_END, CORE, DOT, FLOW, FLOW_HEAD, MARGIN, OVERLAP, OVERLAP_LINE, SCAN, SCAN_POINT, SHELL, START, TRACK,
-    TRACK_HEAD,
+    CLEARANCE_END, CORE, DOT, FLOW, FLOW_HEAD, MARGIN, OVERLAP, OVERLAP_LINE, REFERENCE, SCAN, SCAN_POINT, SHELL,
+    START, TRACK, TRACK_HEAD,
 };
 use super::trajectory::TrajectoryPoint;
 use super::view::View;
@@ -48,6 +48,7 @@ pub(super) struct Panel<'a> {
     aim: Vec<Point2<f64>>,
     /// How near robots are to cores now; the nearest approach of each if this is no moment of several.
     clearances: Vec<Clearance>,
+    reference: &'a [Vector3<f64>],
     /// Only in 2-D: a flow in space is not to be seen from one side.
     field: Option<Field>,
 }
@@ -59,7 +60,7 @@ impl<'a> Panel<'a> {
         trajectories: &'a [Trajectory],
         speeds: Option<(f64, f64)>,
         moment: &Moment,
-        options: &Options,
+        options: &'a Options,
     ) -> Result<Self, PlotError> {
         let Moment { time, tail } = *moment;
         let until = trajectories.iter().map(Trajectory::duration).fold(options.time, f64::max);
@@ -83,12 +84,26 @@ impl<'a> Panel<'a> {
                 let here = trajectories.iter().filter_map(|t| clearance(scene, &at(t, time)?));
                 here.filter(|c| c.distance() < NEAR * size(scene, trajectories)).collect()
             }
-            None => trajectories.iter().filter_map(|t| nearest_approach(scene, t)).collect(),
+            None if options.clearances => trajectories.iter().filter_map(|t| nearest_approach(scene, t)).collect(),
+            None => Vec::new(),
         };
         let field = (options.streamlines && flat).then(|| field::<2>(scene, time)).transpose()?;
         let overlaps = if flat { overlaps } else { Vec::new() };
         let moment = moment.clone();
-        Ok(Self { scene, view: *view, trajectories, speeds, moment, seen, overlaps, commons, aim, clearances, field })
+        Ok(Self {
+            scene,
+            view: *view,
+            trajectories,
+            speeds,
+            moment,
+            seen,
+            overlaps,
+            commons,
+            aim,
+            clearances,
+            reference: &options.reference,
+            field,
+        })
     }
 
     /// How long before now what is drawn thick of a path begins, s; none if all of it is.
@@ -121,6 +136,9 @@ impl<'a> Panel<'a> {
     }
     pub fn has_scan(&self) -> bool {
         self.scene.scan().is_some()
+    }
+    pub fn has_reference(&self) -> bool {
+        !self.reference.is_empty()
     }
     pub fn has_flow(&self) -> bool {
         self.field.is_some()
@@ -155,12 +173,13 @@ impl<'a> Panel<'a> {
         let places = self.scene.starts().iter().map(|p| self.view.project(p)).chain([self.attractor()]);
         let paths = self.trajectories.iter().flat_map(|t| &t.points).map(|p| self.view.project(&p.position));
         let regions = self.seen.iter().flat_map(|s| std::iter::once(&s.core).chain(&s.shell));
+        let reference = self.reference.iter().map(|p| self.view.project(p));
         let shapes = regions.flat_map(|region| &region.ring).copied();
         let scan = self.scene.scan().into_iter().flat_map(|scan| {
             let corner = Vector2::from_element(scan.radius());
             scan.points().iter().map(|p| self.view.project(p)).flat_map(move |p| [p - corner, p + corner])
         });
-        Extent::around(places.chain(paths).chain(shapes).chain(scan).chain(self.aim.iter().copied()))
+        Extent::around(places.chain(paths).chain(reference).chain(shapes).chain(scan).chain(self.aim.iter().copied()))
     }
 
     fn attractor(&self) -> Point2<f64> {
@@ -205,6 +224,8 @@ impl<'a> Panel<'a> {
             if self.moment.tail.is_some() {
                 self.trajectories.iter().for_each(|t| draw(svg, &t.points, Stroke::Thin));
             }
+            let reference: Vec<_> = self.reference.iter().map(pixel).collect();
+            svg.path(thinned(&reference, 0.1), false, REFERENCE);
             under.iter().for_each(|(_, part)| draw(svg, part, Stroke::Thick));
             if self.moment.tail.is_some() {
                 starts(svg);

@@ -15,6 +15,8 @@ pub(super) const BEFORE: &str = r##"fill="none" stroke="#6b7480" stroke-width="0
 pub(super) const BEFORE_INSIDE: &str = r##"fill="none" stroke="#c3cad3" stroke-width="0.9" stroke-dasharray="4 3""##;
 pub(super) const TRACK: &str =
     r##"fill="none" stroke="#343a43" stroke-width="1.3" stroke-dasharray="1.5 3" stroke-linecap="round""##;
+/// The path that others are compared with.
+pub(super) const REFERENCE: &str = r##"fill="none" stroke="#17a2b8" stroke-width="1.8" stroke-dasharray="6 3""##;
 /// Paths whose speed is not shown.
 pub(super) const LINE_COLOUR: &str = "#1f5fbf";
 /// From a robot to the nearest place of a core.

@@ -180,6 +180,14 @@ impl Scene {
         })
     }
 
+    /// Reads a scene from a text with a model that is at hand: `model` is the text of the file that `ds.model` names.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn parse_with_model(name: &str, text: &str, model: &str) -> Result<Self, SceneError> {
+        check::scene(name, text, &|relative| Ok((relative.to_owned(), model.to_owned())))
+    }
+
     /// The scene that is compiled in: `scenes/sbend-foam.toml`.
     ///
     /// # Errors
@@ -243,6 +251,12 @@ impl Scene {
     /// Where runs start, m; at least one.
     pub fn starts(&self) -> &[Vector3<f64>] {
         &self.starts
+    }
+    /// The same with the first `count` of its starts, at least one.
+    pub fn with_first_starts(&self, count: usize) -> Self {
+        let mut fewer = self.clone();
+        fewer.starts.truncate(count.max(1));
+        fewer
     }
     /// The obstacles in the order of the file; the place in it is an obstacle's id.
     pub fn obstacles(&self) -> &[SceneObstacle] {

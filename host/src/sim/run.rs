@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use pliant_protocol::message::{Mode, Region, Statistics};
 use pliant_protocol::{ToDevice, checksum};
 
-use super::{Latency, stepped, timed};
+use super::{Latency, Perception, Sight, stepped, timed};
 use crate::bridge::session::Received;
 use crate::bridge::{BridgeError, Session, wire};
 use crate::scene::{Scene, SceneScan};
@@ -14,7 +14,7 @@ pub(super) const PERCEPTION_TICKS: u64 = 33;
 /// Ticks between the points of a path that are kept.
 const KEPT_TICKS: u64 = 10;
 /// A tick, s.
-pub(super) const TICK: f64 = 1e-3;
+pub const TICK: f64 = 1e-3;
 
 /// How to run.
 #[derive(Clone, Copy, Debug, Default)]
@@ -25,6 +25,8 @@ pub struct RunOptions {
     pub duration: Option<f64>,
     /// The link cannot carry a state a millisecond: send every tenth.
     pub slow_link: bool,
+    /// How well obstacles are seen.
+    pub perception: Perception,
 }
 
 /// Where the robot was.
@@ -154,19 +156,23 @@ pub fn prepare(session: &mut Session, scene: &Scene) -> Result<(), BridgeError> 
     session.request("the settings", &ToDevice::Configure(wire::settings(scene)))
 }
 
-/// What is seen of the scene at time `t`, and what that is: every obstacle, the scan, and the attractor if it moves, as messages stamped
-/// with the host's clock, us.
+/// What was seen of the scene, as messages: every obstacle, the scan, and the attractor if it moves, stamped with what the host's clock was at
+/// the time, us.
 ///
 /// # Errors
 /// An obstacle cannot be sent; one of a checked scene always can.
-pub(super) fn sightings(scene: &Scene, t: f64, stamp: u64) -> Result<Vec<(&'static str, ToDevice)>, BridgeError> {
-    let mut seen = Vec::with_capacity(scene.obstacles().len() + 1);
-    for o in scene.obstacles_at(t) {
-        let obstacle = wire::obstacle(&o, scene.dimension())?;
+pub(super) fn messages(
+    scene: &Scene,
+    sight: &Sight<'_>,
+    stamp: u64,
+) -> Result<Vec<(&'static str, ToDevice)>, BridgeError> {
+    let mut seen = Vec::with_capacity(sight.obstacles.len() + 1);
+    for o in &sight.obstacles {
+        let obstacle = wire::obstacle(o, scene.dimension())?;
         seen.push(("an obstacle", ToDevice::Upsert { id: o.obstacle.id(), stamp, obstacle }));
     }
     seen.extend(wire::scan(scene, stamp).map(|piece| ("the scan", piece)));
-    seen.extend(wire::aim(scene, t, stamp).map(|aim| ("the attractor", aim)));
+    seen.extend(wire::aim(scene, sight.time(), stamp).map(|aim| ("the attractor", aim)));
     Ok(seen)
 }
 

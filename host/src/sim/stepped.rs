@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 use pliant_protocol::ToDevice;
 use pliant_protocol::message::{Region, TickMode};
 
-use super::PointRobot;
-use super::run::{Log, PERCEPTION_TICKS, RunOptions, TICK, sightings};
+use super::run::{Log, PERCEPTION_TICKS, RunOptions, TICK, messages};
+use super::{Camera, PointRobot};
 use crate::bridge::{BridgeError, Session, wire};
 use crate::scene::Scene;
 
@@ -23,6 +23,7 @@ pub(super) fn drive(
     let mut robot = PointRobot::at(log.start());
     let patience = options.duration.unwrap_or(scene.goal().timeout);
     let mut region = Region::Free;
+    let (mut camera, begin) = (Camera::new(scene, options.perception), *clock);
     session.request("clear", &ToDevice::Clear)?;
     session.request("arm", &ToDevice::Arm { tick: TickMode::Stepped })?;
     for tick in 0.. {
@@ -30,10 +31,12 @@ pub(super) fn drive(
         if log.moved(time, robot.position, robot.velocity, region) || time >= patience {
             break;
         }
-        if u64::is_multiple_of(tick, PERCEPTION_TICKS) {
-            for (what, sighting) in sightings(scene, time, *clock)? {
-                session.request(what, &sighting)?;
+        if let Some(sight) = camera.at(tick) {
+            for (what, message) in messages(scene, &sight, begin + sight.tick * 1000)? {
+                session.request(what, &message)?;
             }
+        }
+        if u64::is_multiple_of(tick, PERCEPTION_TICKS) {
             watch(time, log.distance(time, &robot.position));
         }
         let sent = Instant::now();

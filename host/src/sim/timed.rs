@@ -7,8 +7,8 @@ use nalgebra::Vector3;
 use pliant_protocol::ToDevice;
 use pliant_protocol::message::{DeviceError, Region, TickMode};
 
-use super::PointRobot;
-use super::run::{Log, PERCEPTION_TICKS, RunOptions, TICK, sightings};
+use super::run::{Log, PERCEPTION_TICKS, RunOptions, TICK, messages};
+use super::{Camera, PointRobot};
 use crate::bridge::session::Event;
 use crate::bridge::{BridgeError, Session, wire};
 use crate::scene::Scene;
@@ -37,8 +37,9 @@ pub(super) fn drive(
     let patience = options.duration.unwrap_or(scene.goal().timeout);
     let state_ticks = if options.slow_link { SLOW_TICKS } else { 1 };
     session.request("clear", &ToDevice::Clear)?;
-    for (what, sighting) in sightings(scene, 0.0, *clock)? {
-        session.request(what, &sighting)?;
+    let (mut camera, first) = (Camera::new(scene, options.perception), *clock);
+    for (what, message) in camera.at(0).map_or(Ok(Vec::new()), |sight| messages(scene, &sight, first))? {
+        session.request(what, &message)?;
     }
     session.request("arm", &ToDevice::Arm { tick: TickMode::Timed })?;
     let missed = session.statistics()?.missed;
@@ -52,10 +53,12 @@ pub(super) fn drive(
         if log.moved(time, robot.position, robot.velocity, region) || time >= patience {
             break;
         }
-        if u64::is_multiple_of(tick, PERCEPTION_TICKS) {
-            for (_, sighting) in sightings(scene, time, *clock)? {
-                session.send(&sighting)?;
+        if let Some(sight) = (tick > 0).then(|| camera.at(tick)).flatten() {
+            for (_, message) in messages(scene, &sight, first + sight.tick * 1000)? {
+                session.send(&message)?;
             }
+        }
+        if u64::is_multiple_of(tick, PERCEPTION_TICKS) {
             watch(time, log.distance(time, &robot.position));
         }
         if u64::is_multiple_of(tick, state_ticks) {

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::error::OracleError;
-use super::geometry::{cross, rotation_matrix, turned_left, unit, vector};
+use super::geometry::{cross, length, rotation_matrix, turned_left, unit, vector};
 use super::polygon::SIGHT;
 use super::scene::{OracleMethod, OracleObstacle, OracleSpin};
 use super::shape::Shape;
@@ -238,9 +238,13 @@ impl Body {
         if self.swelling == 0.0 { standing } else { standing + self.normal(x) * self.swelling }
     }
 
-    /// The least of the semi-extents of the hard surface; gauge - 1 times this is no more than the distance of the core.
+    /// The gauge changes by no more than 1 on a way of this length: the least of the semi-extents of the hard surface, of a polygon the distance of its
+    /// nearest edge from the centre.
     pub(super) fn least_extent(&self) -> f64 {
-        self.extents.component_mul(&self.hard).min()
+        match &self.shape {
+            Shape::Star(star) => self.hard.min() / star.slopes().iter().map(length).fold(0.0, f64::max),
+            _ => self.extents.component_mul(&self.hard).min(),
+        }
     }
 
     /// What no point of the body is faster than, grown until it reaches x, m/s.

@@ -142,13 +142,14 @@ impl<S: Scalar> Body<S> {
 
     /// The line to keep behind for a piece.
     fn side(&self, piece: &Run, here: &Here<S>) -> Option<Side<S>> {
+        let whole = piece.count == self.edges.len();
         let outline = self.outline(piece);
-        if let Some(side) = self.nearest(&outline, here) {
+        if let Some(side) = self.nearest(&outline, whole, here) {
             return Some(side);
         }
         let mut best = Best { side: None };
         self.run(&outline).for_each(|edge| best.consider(self.beyond(edge, here)));
-        if piece.count < self.edges.len() {
+        if !whole {
             // The sides along the rays through its first and last corners, and across the way to the origin where all of it is beyond that. Only whoever
             // is beyond one keeps behind it: from within, the way out is over an edge.
             let from = self.edge(piece.first)?.from;
@@ -173,13 +174,13 @@ impl<S: Scalar> Body<S> {
         if self.wall { here.side([-edge.normal[0], -edge.normal[1]], -over) } else { here.side(edge.normal, over) }
     }
 
-    /// Across the way to the nearest point of an outline, if that is its inside and it is seen from in front.
-    fn nearest(&self, outline: &Run, here: &Here<S>) -> Option<Side<S>> {
+    /// Across the way to the nearest point of an outline, if that is none of its ends and it is seen from in front. That of a polygon which is `whole`
+    /// has no ends; any other has, if only the two sides of a notch.
+    fn nearest(&self, outline: &Run, whole: bool, here: &Here<S>) -> Option<Side<S>> {
         // A corner counts where both edges say that it is nearer than they are: a line through it has both behind it then, to the last digit.
         let rounding = S::EPSILON * S::from_f64(8.0);
         let past = |edge: &Edge<S>| dot(sub(here.u, edge.to), edge.along);
-        let closed = outline.count == self.edges.len();
-        let mut before = if closed { self.edges.last().map(past) } else { None };
+        let mut before = if whole { self.edges.last().map(past) } else { None };
         let mut nearest: Option<(S, Option<Side<S>>)> = None;
         for (k, edge) in self.run(outline).enumerate() {
             let corner = sub(here.u, edge.from);
@@ -197,7 +198,7 @@ impl<S: Scalar> Body<S> {
                 let side = self.beyond(edge, here);
                 let distance = side.gap.abs() / S::norm(&side.normal);
                 Some((distance, (side.gap > S::zero()).then_some(side)))
-            } else if k + 1 == outline.count && !closed {
+            } else if k + 1 == outline.count && !whole {
                 Some((S::norm(&sub(here.u, edge.to)), None))
             } else {
                 None

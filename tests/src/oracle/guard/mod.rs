@@ -103,14 +103,13 @@ pub fn half_spaces(next: &OracleScene, x: &[f64], wanted: &[f64], dt: f64) -> Re
     let bodies = bodies(next)?;
     let reach = next.guard.map_or(f64::INFINITY, |alpha| step / alpha);
     for (n, body) in bodies.iter().enumerate() {
-        if !body.wall {
-            // Whether the gauge says that it can be reached, or so nearly that its gap would matter; of one that moves the page
-            // does not say where it is then.
-            let away = (body.gauge(&x) - 1.0) * body.least_extent();
-            complete &= (away - reach).abs() >= 2.0 * body.fastest(&x) * dt;
-            if away > reach {
-                continue;
-            }
+        // Whether the gauge says that it can be reached, or so nearly that its gap would matter; of one that moves the page
+        // does not say where it is then.
+        let beyond = (body.gauge(&x) - 1.0) * body.least_extent();
+        let lead = if body.wall { -beyond } else { beyond };
+        complete &= (lead - reach).abs() >= 2.0 * body.fastest(&x) * dt;
+        if lead > reach {
+            continue;
         }
         match &body.shape {
             Shape::Star(_) => {

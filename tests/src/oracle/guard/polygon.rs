@@ -102,7 +102,8 @@ fn outline(edges: &[Edge], piece: &[usize]) -> Vec<usize> {
 
 fn side(body: &Body, edges: &[Edge], piece: &[usize], x: &DVector<f64>, asked: &DVector<f64>) -> Option<Side> {
     let outline = outline(edges, piece);
-    let closed = outline.len() == edges.len();
+    // Only a polygon of one piece goes round; the outline of another may have all edges and still ends at the two sides of a notch.
+    let closed = piece.len() == edges.len();
     let inner = |k: usize, at_end: bool| closed || if at_end { k + 1 < outline.len() } else { k > 0 };
     // The nearest point of every edge, and the half-space there, if there is one.
     let mut feet: Vec<(f64, Option<DVector<f64>>)> = Vec::new();
@@ -135,7 +136,7 @@ fn side(body: &Body, edges: &[Edge], piece: &[usize], x: &DVector<f64>, asked: &
     }
     let lines = outline.iter().map(|i| (edges[*i].normal.clone(), edges[*i].gap(x))).collect::<Vec<_>>();
     let mut beyond: Vec<(DVector<f64>, f64)> = lines.iter().filter(|line| line.1 > 0.0).cloned().collect();
-    if piece.len() < edges.len() {
+    if !closed {
         let from = &edges[piece[0]].from - &body.center;
         let to = &edges[piece[piece.len() - 1]].to - &body.center;
         let own = x - &body.center;
@@ -152,11 +153,9 @@ fn side(body: &Body, edges: &[Edge], piece: &[usize], x: &DVector<f64>, asked: &
             beyond.push((out, length(&own)));
         }
     }
-    let (choice, by): (_, Box<dyn Fn(&(DVector<f64>, f64)) -> f64>) = if beyond.is_empty() {
-        (lines, Box::new(|line| line.1))
-    } else {
-        (beyond, Box::new(|line| line.1 + line.0.dot(asked)))
-    };
+    let outside = !beyond.is_empty();
+    let choice = if outside { beyond } else { lines };
+    let by = |line: &(DVector<f64>, f64)| if outside { line.1 + line.0.dot(asked) } else { line.1 };
     let best = choice.iter().max_by(|a, b| by(a).total_cmp(&by(b)))?;
     // The same line twice is no tie.
     let tied = |line: &&(DVector<f64>, f64)| by(line) > by(best) - TIE && length(&(&line.0 - &best.0)) > TIE;

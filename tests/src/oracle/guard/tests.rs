@@ -106,13 +106,28 @@ fn half_spaces_by_hand() {
     let within = of(OracleObstacle::of(&[0.0, 0.0], diamond()).inside_out(), &[0.1, 0.1]);
     assert!((within[0].gap - 0.8 * 0.5_f64.sqrt()).abs() < 1e-14);
     assert!((within[0].normal[0] + 0.5_f64.sqrt()).abs() < 1e-14);
-    // An L, cut at three of its corners: beyond one of them the pieces on both sides of it have the same half-space.
+    // An L, cut at three of its corners: the outline of every piece has the one that x is beyond, so all have the same half-space.
     let vertices = vec![[11.0, -3.0], [11.0, 3.0], [3.0, 3.0], [3.0, 11.0], [-3.0, 11.0], [-3.0, -3.0]];
     let seen = of(OracleObstacle::of(&[0.0, 0.0], OracleShape::Polygon { vertices }), &[-4.0, 12.0]);
     let half = 0.5_f64.sqrt();
     let same = seen.iter().filter(|s| (s.normal[0] + half).abs() < 1e-14 && (s.gap - 2.0 * half).abs() < 1e-13);
-    assert_eq!((seen.len(), same.count()), (4, 2));
+    assert_eq!((seen.len(), same.count()), (4, 4));
     assert!(seen.iter().all(|s| s.gap > 1.4), "{seen:?}");
+    // A star of four points: the narrow pieces on the other side of the origin are kept off by the line through it across x.
+    let (tip, notch) = (5.0, 1.0);
+    let vertices = vec![
+        [tip, 0.0],
+        [notch, notch],
+        [0.0, tip],
+        [-notch, notch],
+        [-tip, 0.0],
+        [-notch, -notch],
+        [0.0, -tip],
+        [notch, -notch],
+    ];
+    let seen = of(OracleObstacle::of(&[0.0, 0.0], OracleShape::Polygon { vertices }), &[0.0, 6.0]);
+    let across = seen.iter().filter(|s| (s.normal[1] - 1.0).abs() < 1e-14 && (s.gap - 6.0).abs() < 1e-13);
+    assert_eq!((seen.len(), across.count()), (4, 1), "{seen:?}");
 }
 
 #[test]

@@ -1,0 +1,188 @@
+//! `pliant study`
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::Subcommand;
+use indicatif::ProgressBar;
+
+use super::{Finished, print_json, progress};
+use crate::bridge::Device;
+use crate::error::Outcome;
+use crate::study::skill::Skills;
+use crate::study::{self, Findings, column, experiments, placements, trajectories};
+
+/// Options of `pliant study`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Args {
+    #[command(subcommand)]
+    study: Study,
+}
+
+#[derive(Clone, Debug, Subcommand)]
+enum Study {
+    /// Everything the paper shows, and what it does not: all of the others.
+    Paper {
+        #[command(flatten)]
+        common: Common,
+        #[command(flatten)]
+        device: OnDevice,
+        #[command(flatten)]
+        places: Places,
+    },
+    /// Motions past one and two deformable obstacles, from many places (Fig. 3).
+    Trajectories {
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Time against stiffness, and time saved against the original method (Fig. 4).
+    Time {
+        #[command(flatten)]
+        common: Common,
+    },
+    /// The experiments A1 to D1, and the claims about speed (section V).
+    Experiments {
+        #[command(flatten)]
+        common: Common,
+        #[command(flatten)]
+        device: OnDevice,
+    },
+    /// Random obstacles on both sides of the path: what the method does where the paper did not look.
+    Placements {
+        #[command(flatten)]
+        common: Common,
+        #[command(flatten)]
+        places: Places,
+    },
+}
+
+#[derive(Clone, Debug, clap::Args)]
+struct Common {
+    /// Folder with Sshape.mat, Angle.mat and Leaf_1.mat of the LASA handwriting set, learnt now, a unit as a centimetre; without it the
+    /// project's own motions stand in.
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+    /// Where to write report.md, tables, figures and scenes.
+    #[arg(short, long, value_name = "DIR", default_value = "out/study")]
+    out: PathBuf,
+    /// Seed of all random choices.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+#[derive(Clone, Debug, clap::Args)]
+struct OnDevice {
+    /// Run A1, B1 and D1 on this device too, and compare every bit with the virtual one.
+    #[arg(long)]
+    device: Option<Device>,
+}
+
+#[derive(Clone, Debug, clap::Args)]
+struct Places {
+    /// Random obstacles on each side of the path.
+    #[arg(long, value_name = "N", default_value_t = placements::COUNT)]
+    placements: usize,
+}
+
+impl Study {
+    fn common(&self) -> &Common {
+        match self {
+            Self::Paper { common, .. }
+            | Self::Trajectories { common }
+            | Self::Time { common }
+            | Self::Experiments { common, .. }
+            | Self::Placements { common, .. } => common,
+        }
+    }
+}
+
+/// Where the bar is.
+struct Stage<'a> {
+    bar: &'a ProgressBar,
+}
+
+impl Stage<'_> {
+    /// Runs a part with a bar that fills as it goes on.
+    fn run<R>(&self, name: &'static str, part: impl FnOnce(&(dyn Fn(usize) + Sync)) -> R) -> R {
+        self.bar.set_message(name);
+        self.bar.set_position(0);
+        // How many steps there are is up to the part: the bar nears its end as they go on.
+        part(&|done| self.bar.set_position(1000 * done as u64 / (done as u64 + 40)))
+    }
+}
+
+pub(super) fn main(args: &Args, json: bool) -> Finished {
+    let common = args.study.common();
+    let bar = progress::bar(json);
+    let stage = Stage { bar: &bar };
+    let skills = stage.run("motions", |done| Skills::new(common.data.as_deref(), done))?;
+    let seed = common.seed;
+    let trajectories = || stage.run("trajectories", |done| trajectories::study(&skills, seed, done));
+    let time = || stage.run("times", |done| study::time(&skills, done));
+    let experiments =
+        |on: &OnDevice| stage.run("experiments", |done| experiments::study(&skills, on.device.as_ref(), seed, done));
+    let placements =
+        |places: &Places| stage.run("placements", |done| placements::study(&skills, places.placements, seed, done));
+    let found = match &args.study {
+        Study::Trajectories { .. } => trajectories()?,
+        Study::Time { .. } => time()?,
+        Study::Experiments { device, .. } => experiments(device)?,
+        Study::Placements { places, .. } => placements(places)?,
+        Study::Paper { device, places, .. } => {
+            let mut all = trajectories()?;
+            all.append(time()?);
+            all.append(experiments(device)?);
+            all.append(placements(places)?);
+            all
+        }
+    };
+    bar.set_message("figures");
+    let introduction = introduction(&skills, common);
+    found.write(&common.out, &introduction)?;
+    bar.finish_and_clear();
+    report(&found, &skills, common, &introduction, json)
+}
+
+/// What was studied, and with what.
+fn introduction(skills: &Skills, common: &Common) -> String {
+    let mut text = String::from("# The paper's studies, run again\n\nMotions: ");
+    for skill in skills.three().into_iter().chain([&skills.recorded]) {
+        let _ = write!(text, "{} ({}), ", skill.name, skill.origin);
+    }
+    if !skills.lasa {
+        text += "the project's own in the place of LASA handwriting (`--data DIR` names a folder of it), ";
+    }
+    let _ = writeln!(
+        text,
+        "c = {} m/s in all, theta_2 = {:.0} degrees where the paper is followed to the letter, seed {}.",
+        column::GAIN,
+        column::THETA.to_degrees(),
+        common.seed
+    );
+    text
+}
+
+fn report(found: &Findings, skills: &Skills, common: &Common, introduction: &str, json: bool) -> Finished {
+    if json {
+        let mut all = found.to_json();
+        if let Some(all) = all.as_object_mut() {
+            all.insert("data".into(), if skills.lasa { "lasa" } else { "own" }.into());
+            all.insert("c".into(), column::GAIN.into());
+            all.insert("seed".into(), common.seed.into());
+            all.insert("folder".into(), common.out.display().to_string().into());
+        }
+        print_json(&all);
+    } else {
+        say!("{introduction}");
+        for v in &found.verdicts {
+            say!("  {}  {}", if v.holds { "holds " } else { "FAILS " }, v.claim);
+            say!("          paper: {}; measured: {}", v.paper, v.measured);
+        }
+        say!("\n  tables, figures and scenes: {}", shown(&common.out));
+    }
+    Ok(if found.is_well() { Outcome::Success } else { Outcome::Failed })
+}
+
+fn shown(folder: &Path) -> String {
+    folder.join("report.md").display().to_string()
+}

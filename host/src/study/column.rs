@@ -1,0 +1,62 @@
+//! What is compared: the paper to the letter, Pliant's default, and the method the paper builds on.
+
+use std::fmt;
+
+/// c of eqs. 15 and 27 in every study, m/s. The paper gives none; this one, together with where the obstacles of A and B stand, was chosen so that
+/// both of its figures for speed come out. (The tool's own default is 0.03, for a gentler push.)
+pub const GAIN: f64 = 0.05;
+
+/// theta_2 where the paper is followed to the letter, rad (40 degrees). It gives none: of all multiples of ten degrees this one comes nearest to both
+/// of its figures for speed. See [`super::placements`] for what others do.
+pub const THETA: f64 = 2.0 * std::f64::consts::PI / 9.0;
+
+/// A way to compute the velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Column {
+    /// Eqs. 15 and 27 as they are printed, with a fixed theta_2 (rad), and nothing that keeps out of a core but the modulation.
+    Letter(f64),
+    /// The push along the flow, and the guard.
+    Pliant,
+    /// Huber, Billard & Slotine 2019: soft layers are not there. No guard, as theirs has none.
+    Original,
+}
+
+impl Column {
+    /// The three of every table.
+    pub const ALL: [Self; 3] = [Self::Letter(THETA), Self::Pliant, Self::Original];
+
+    /// What JSON and CSV call it.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Letter(_) => "letter",
+            Self::Pliant => "pliant",
+            Self::Original => "original",
+        }
+    }
+
+    /// What tables and figures call it.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Letter(_) => "paper to the letter",
+            Self::Pliant => "Pliant's default",
+            Self::Original => "original (Huber 2019)",
+        }
+    }
+
+    /// The part of a scene file that says so.
+    pub fn toml(self) -> String {
+        match self {
+            Self::Letter(theta) => {
+                format!("[modulation]\nc = {GAIN:?}\nsteering = {{ fixed = {theta:?} }}\n[guard]\nenabled = false\n")
+            }
+            Self::Pliant => format!("[modulation]\nc = {GAIN:?}\n"),
+            Self::Original => "[modulation]\nmethod = \"original\"\n[guard]\nenabled = false\n".into(),
+        }
+    }
+}
+
+impl fmt::Display for Column {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.title())
+    }
+}

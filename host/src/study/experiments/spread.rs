@@ -1,0 +1,75 @@
+//! The claims of the experiments over other places than the one that was chosen: a figure that depends on the place is one of many.
+
+use super::cases::{one, two};
+use super::outcome::{intersection, soft};
+use crate::error::Error;
+use crate::study::column::Column;
+use crate::study::drive::{Driving, Robot, Step, drive};
+use crate::study::measure::{change_percent, mean_speed, sorted};
+use crate::study::parallel;
+use crate::study::skill::Skill;
+use crate::study::world::{Body, World};
+
+/// How much faster (in percent) robots are than by the original method, each by the place of the obstacles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// In the soft layer of one cylinder, by increasing gain.
+    pub soft: Vec<f64>,
+    /// Where two layers overlap, likewise.
+    pub intersection: Vec<f64>,
+    /// Places at which the default missed the goal or touched a core though the original method did not.
+    pub failed: usize,
+    /// Places at which the original method did, which leaves nothing to compare with; and those of them at which the default did too.
+    pub void: (usize, usize),
+}
+
+/// Shares of the path at which obstacles are put.
+const SHARES: [f64; 9] = [0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65];
+/// How far to the left of the path the cylinder is, m.
+const LEFT: [f64; 6] = [-0.04, -0.025, -0.01, 0.01, 0.025, 0.04];
+/// How far apart the cores of a pair are, m.
+const GAPS: [f64; 3] = [0.015, 0.0175, 0.02];
+
+/// Over places along the whole path and on both sides of it.
+///
+/// # Errors
+/// None: a place at which a scene is not allowed (a core on the start) is left out.
+pub fn spread(skill: &Skill, done: &(dyn Fn(usize) + Sync)) -> Result<Spread, Error> {
+    let mut worlds: Vec<(bool, Vec<Body>)> = Vec::new();
+    for share in SHARES {
+        worlds.extend(LEFT.iter().map(|left| (true, one(skill, share, *left))));
+        worlds.extend(GAPS.iter().flat_map(|gap| [-1.0, 1.0].map(|side| (false, two(skill, share, *gap, side)))));
+    }
+    let found = parallel::map(&worlds, done, |(single, bodies)| {
+        let within: fn(&Step) -> bool = if *single { soft } else { intersection };
+        let world = World::new(skill, bodies.clone());
+        let of = |column: Column| {
+            // A core on the start or the goal is a place that cannot be.
+            let Ok(scene) = world.scene("place", column) else { return Ok(None) };
+            let run = drive(&scene, &skill.start, &Driving::of(Robot::Lagging), None)?;
+            Ok::<_, Error>(Some((mean_speed(&run, within), run.reached && !run.touched())))
+        };
+        let (ours, original) = (of(Column::Pliant)?, of(Column::Original)?);
+        Ok(ours.zip(original).map(|((ours, well), (original, comparable))| {
+            let change = ours.zip(original).map(|(ours, original)| change_percent(ours, original));
+            Place { single: *single, well, comparable, change: change.filter(|_| comparable) }
+        }))
+    })?;
+    let all = || found.iter().flatten();
+    let changes = |single: bool| sorted(all().filter(|p| p.single == single).filter_map(|p| p.change));
+    let void = || all().filter(|p| !p.comparable);
+    Ok(Spread {
+        soft: changes(true),
+        intersection: changes(false),
+        failed: all().filter(|p| p.comparable && !p.well).count(),
+        void: (void().count(), void().filter(|p| !p.well).count()),
+    })
+}
+
+/// What came of a place.
+struct Place {
+    single: bool,
+    well: bool,
+    comparable: bool,
+    change: Option<f64>,
+}

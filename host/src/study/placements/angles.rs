@@ -1,0 +1,107 @@
+//! The paper to the letter by its angle theta_2: what it does is up to the angle, and to the side on which the obstacle is passed.
+
+use crate::error::Error;
+use crate::plot::Figure;
+use crate::plot::chart::{Chart, Colour, Mark, Series, charts};
+use crate::study::column::{Column, THETA};
+use crate::study::drive::{Driving, Robot, drive};
+use crate::study::experiments::cases::one;
+use crate::study::measure::{change_percent, mean_speed};
+use crate::study::parallel;
+use crate::study::skill::Skill;
+use crate::study::table::{Table, signed, yes};
+use crate::study::world::World;
+
+/// Degrees between two angles.
+const STEP: i32 = 10;
+/// Where the cylinder is: at this share of the path, this far to its left or its right, m.
+const PLACE: (f64, f64) = (0.53, 0.025);
+
+/// What came of an angle on a side.
+#[derive(Clone, Copy, Debug)]
+pub struct Angle {
+    /// Degrees; none is the default, which takes the flow's.
+    degrees: Option<i32>,
+    /// Is the obstacle to the left?
+    left: bool,
+    /// Percent.
+    change: Option<f64>,
+    reached: bool,
+    touched: bool,
+}
+
+/// Every angle, on both sides.
+pub fn study(skill: &Skill, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<Angle>, Error> {
+    let angles = (-180 / STEP..180 / STEP).map(|i| Some(i * STEP)).chain([None]);
+    let all: Vec<(Option<i32>, bool)> = angles.flat_map(|a| [(a, true), (a, false)]).collect();
+    parallel::map(&all, done, |(degrees, left)| {
+        let world =
+            World { timeout: 15.0, ..World::new(skill, one(skill, PLACE.0, if *left { PLACE.1 } else { -PLACE.1 })) };
+        let driving = Driving { ends_at_contact: true, ..Driving::of(Robot::Exact) };
+        let run = |column| {
+            let scene = world.scene("angle", column)?;
+            drive(&scene, &skill.start, &driving, None)
+        };
+        let column = degrees.map_or(Column::Pliant, |d| Column::Letter(f64::from(d).to_radians()));
+        let (ours, original) = (run(column)?, run(Column::Original)?);
+        let speed = |d| mean_speed(d, |s| s.layers > 0 && s.gamma > 1.0);
+        let change = speed(&ours).zip(speed(&original)).map(|(a, b)| change_percent(a, b));
+        Ok(Angle { degrees: *degrees, left: *left, change, reached: ours.reached, touched: ours.touched() })
+    })
+}
+
+/// One row an angle.
+pub fn table(all: &[Angle]) -> Table {
+    let title = "Speed in the soft layer of one cylinder against the original method by theta_2, percent, and how the run ended";
+    let mut table =
+        Table::new("angles", title, &["theta_2, degrees", "obstacle", "change %", "reached", "entered the core"]);
+    for a in all {
+        let angle = a.degrees.map_or("with the flow".into(), |d| d.to_string());
+        let side = if a.left { "left" } else { "right" };
+        table.push([
+            angle,
+            side.into(),
+            signed(a.change, 1),
+            yes(a.reached),
+            if a.touched { "YES" } else { "no" }.into(),
+        ]);
+    }
+    table
+}
+
+/// Both sides beside each other; a dot where a run entered the core or never arrived.
+pub fn figure(all: &[Angle]) -> Figure {
+    let chart = |title: &str, left: bool| {
+        let of: Vec<&Angle> = all.iter().filter(|a| a.left == left).collect();
+        let points = |failed: bool| {
+            of.iter()
+                .filter(|a| !failed || !a.reached)
+                .filter_map(|a| Some((f64::from(a.degrees?), a.change?)))
+                .collect::<Vec<_>>()
+        };
+        let level = of.iter().find(|a| a.degrees.is_none()).and_then(|a| a.change).unwrap_or(f64::NAN);
+        let changes = || all.iter().filter_map(|a| a.change).chain([0.0]);
+        let (lowest, highest) = (changes().fold(0.0, f64::min) - 5.0, changes().fold(0.0, f64::max) + 5.0);
+        let chosen = f64::from(THETA.to_degrees().round() as i32);
+        let dashed = |name: &str, colour, points| Series { mark: Mark::Dashed, ..Series::line(name, colour, points) };
+        Chart {
+            title: title.into(),
+            x: "theta_2 (degrees)".into(),
+            y: "change of speed (%)".into(),
+            series: vec![
+                dashed("original", Colour::Original, vec![(-180.0, 0.0), (180.0, 0.0)]),
+                Series::line("with the flow (default)", Colour::Pliant, vec![(-180.0, level), (180.0, level)]),
+                dashed("theta_2 of the other studies", Colour::Reference, vec![(chosen, lowest), (chosen, highest)]),
+                Series::line("paper to the letter", Colour::Letter, points(false)),
+                Series {
+                    mark: Mark::Dots,
+                    ..Series::line("never arrived, or entered the core", Colour::Letter, points(true))
+                },
+            ],
+            x_range: Some((-180.0, 180.0)),
+            y_range: Some((lowest, highest)),
+            ..Chart::default()
+        }
+    };
+    charts(&[chart("obstacle to the left", true), chart("obstacle to the right", false)], 2, 500.0)
+}
