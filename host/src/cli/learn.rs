@@ -5,12 +5,12 @@ use std::time::Instant;
 
 use serde_json::json;
 
+use super::check::per_second;
 use super::{Finished, print_json, progress, warn};
 use crate::error::{Error, Outcome};
 use crate::learn::{Demonstrations, Learnt, Options, Unit, learn_from, memory, read};
-use crate::model::{ModelFile, Skill};
+use crate::model::ModelFile;
 use crate::plot::{self, Portrait};
-use pliant_core::Scalar;
 
 /// Options of `pliant learn`.
 #[derive(Clone, Debug, clap::Args)]
@@ -141,10 +141,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         draw(&learnt, figure)?;
     }
     let warnings: Vec<_> = learnt.demonstrations.warnings().iter().map(ToString::to_string).collect();
-    let margin = match learnt.model.skill::<f32>()? {
-        Skill::Planar(ds) => ds.certificate().rate.to_f64(),
-        Skill::Spatial(ds) => ds.certificate().rate.to_f64(),
-    };
+    let margin = learnt.model.proof::<f32>()?.margin;
     let (k, q, demonstrations) = (learnt.model.component.len(), &learnt.quality, learnt.demonstrations.items().len());
     if json {
         print_json(&json!({
@@ -163,7 +160,11 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
             q.e_dot,
             q.path_error * 1e3
         );
-        say!("  certified rate {margin:.3} 1/s, rounding included; {:.2} times the demonstrators' time", q.pace);
+        say!(
+            "  proved rate {} on the rounded numbers; {:.2} times the demonstrators' time",
+            per_second(margin),
+            q.pace
+        );
         say!("  {} of {} rollouts from the demonstrations' starts arrive", q.converged, q.rollouts);
         for sentence in verdict(&learnt) {
             say!("  {sentence}");

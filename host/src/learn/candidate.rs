@@ -61,15 +61,17 @@ impl<const D: usize> Lesson<'_, D> {
         let rate = self.sigma * INSIDE;
         let moved: Vec<_> = self.shown.iter().map(|t| follow(t, &self.p, rate)).collect();
         let mut targets = Samples { x: vec![], v: vec![] };
-        let mut label = vec![];
+        let (mut label, mut belief) = (vec![], vec![]);
         for (track, (reference, away)) in self.shown.iter().zip(&moved) {
             let segments = segments(reference, components);
             for (i, (x, v)) in track.x.iter().zip(&track.v).enumerate() {
                 targets.x.push(*x);
+                belief.push(track.belief(x));
                 targets.v.push(admissible(x, v, &self.p, rate));
                 label.push(segments[i]);
                 if away[i] > MOVED {
                     targets.x.push(reference.x[i]);
+                    belief.push(track.belief(&reference.x[i]));
                     targets.v.push(reference.v[i]);
                     label.push(segments[i]);
                 }
@@ -91,7 +93,7 @@ impl<const D: usize> Lesson<'_, D> {
         let followed: Vec<_> = moved.into_iter().map(|m| m.0.after_start()).collect();
         let shown: Vec<_> = self.shown.iter().map(Track::after_start).collect();
         let weights = Weights { path: 0.0, pace: self.pace, ..Weights::default() };
-        let mut task = Task { x: &targets.x, v: &targets.v, tracks: &followed, weights };
+        let mut task = Task { x: &targets.x, v: &targets.v, belief: &belief, tracks: &followed, weights };
         field = improve(field, &task, ROUNDS[0]);
         task.weights.path = Weights::default().path;
         field = improve(field, &task, ROUNDS[1]);
@@ -114,8 +116,7 @@ impl<const D: usize> Lesson<'_, D> {
 }
 
 fn improve<const D: usize>(field: Field<D>, task: &Task<D>, rounds: usize) -> Field<D> {
-    // In space P has five shape parameters in place of two, and its first guess is farther off.
-    if D == 2 { refine::<D, 10>(field, task, rounds) } else { refine::<D, 19>(field, task, 4 * rounds) }
+    if D == 2 { refine::<D, 10>(field, task, rounds) } else { refine::<D, 19>(field, task, rounds) }
 }
 
 /// Errors in multiples of a good model's, and a rollout that does not arrive counts more than any error.
