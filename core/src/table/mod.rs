@@ -85,23 +85,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         Ok(())
     }
 
-    /// The same without looking which cores overlap: [`Table::settle`] does that, and until it has all others have the reference points they had.
-    ///
-    /// ```
-    /// use pliant_core::{Ageing, Obstacle, ObstacleSpec, Table, Vector};
-    /// let at = |x: f64| Obstacle::new(ObstacleSpec { center: Vector::<f64, 2>::new(x, 0.0), ..ObstacleSpec::default() }).unwrap();
-    /// let mut table: Table<f64, 2, 4> = Table::new();
-    /// table.put(1, at(0.0), 0.0, &Ageing::default()).unwrap();
-    /// table.put(2, at(0.08), 0.0, &Ageing::default()).unwrap();
-    /// let first = |t: &Table<f64, 2, 4>| t.iter().next().unwrap().obstacle().reference().x;
-    /// assert_eq!(first(&table), 0.0);
-    /// while table.settle() {}
-    /// assert!((first(&table) - 0.04).abs() < 1e-6);
-    /// ```
-    ///
-    /// # Errors
-    /// [`TableFull`]; then nothing has changed.
-    pub fn put(&mut self, id: u16, mut obstacle: Obstacle<S, D>, age: S, ageing: &Ageing<S>) -> Result<(), TableFull> {
+    /// The same without looking which cores overlap.
+    fn put(&mut self, id: u16, mut obstacle: Obstacle<S, D>, age: S, ageing: &Ageing<S>) -> Result<(), TableFull> {
         let age = age.max(S::zero()).min(ageing.hold);
         if age > S::zero() {
             obstacle.carry(age);
@@ -136,8 +121,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         found
     }
 
-    /// The same without finding reference points for those it overlapped; see [`Table::settle`].
-    pub fn take(&mut self, id: u16) -> bool {
+    /// The same without finding reference points for those it overlapped.
+    fn take(&mut self, id: u16) -> bool {
         let Some(index) = self.entries.iter().position(|e| e.id == id) else {
             return false;
         };
@@ -147,9 +132,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         true
     }
 
-    /// Does one bounded piece of the search for cores that overlap, after [`Table::put`] and [`Table::take`]; false when nothing is left. Changes may come
-    /// and time may pass between two pieces; each is computed from where the obstacles are then.
-    pub fn settle(&mut self) -> bool {
+    /// One step of the search for cores that overlap; false when nothing is left.
+    fn settle(&mut self) -> bool {
         self.clusters.settle(&mut self.entries)
     }
 

@@ -165,15 +165,15 @@ impl<C: Clock, W: Write> Bench<'_, C, W> {
             }
             let figures = timing::measure_upserts::<S, D, CAP>(kind, upserts, &mut self.clock, self.counts);
             let name = kind.map_or("groups", Kind::name);
-            let Ok(timing::UpsertFigures { whole, longest_piece: piece }) = figures else {
+            let Ok(whole) = figures else {
                 self.overflow("upsert", name)?;
                 continue;
             };
             let timing::Figures { median, p99, worst, worst_at, .. } = whole;
             write!(self.out, r#"{{"part":"upsert","room":{CAP},"scene":"{name}","dimension":{D},"#)?;
             write!(self.out, r#""scalar":"{}","core":"{}","upserts":{upserts},"#, S::NAME, self.core)?;
-            write!(self.out, r#""median":{median},"p99":{p99},"worst":{worst},"worst_at":{worst_at},"#)?;
-            writeln!(self.out, r#""longest_piece":{piece}}}"#)?;
+            write!(self.out, r#""median":{median},"p99":{p99},"worst":{worst},"worst_at":{worst_at}}}"#)?;
+            writeln!(self.out)?;
         }
         Ok(())
     }

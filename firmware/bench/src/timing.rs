@@ -133,35 +133,26 @@ impl Figures {
     }
 }
 
-/// What upserts took, and the longest of the pieces in which a device does them: no tick waits longer.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct UpsertFigures {
-    /// Whole upserts.
-    pub whole: Figures,
-    /// Pieces.
-    pub longest_piece: u32,
-}
-
 /// Measures obstacles that are put into a full table of `CAP`, each in the place of another; which cores overlap is found then.
 ///
 /// In a scene of a kind; or, without one, groups of eight overlapping ellipsoids, the largest whose common point is searched for, and one obstacle that
 /// comes to overlap them all and goes again, whereby all are looked at anew.
 ///
 /// # Errors
-/// A piece took longer than the clock can count.
+/// One took longer than the clock can count.
 pub fn measure_upserts<S: Number, const D: usize, const CAP: usize>(
     kind: Option<Kind>,
     upserts: u32,
     clock: &mut impl Clock,
     counts: &mut [u32],
-) -> Result<UpsertFigures, Overflow> {
+) -> Result<Figures, Overflow> {
     let mut random = Random::new(2000);
     let obstacles = CAP as u16;
     let mut controller: Controller<S, D, CAP> = match kind {
         Some(kind) => scene::controller(&Plan { seed: 2000, obstacles, components: 1, points: 0, kind }, &mut random),
         None => scene::groups(&mut random),
     };
-    let UpsertFigures { mut whole, mut longest_piece } = UpsertFigures::default();
+    let mut whole = Figures::default();
     let counts = counts.get_mut(..upserts as usize).unwrap_or_default();
     for (done, place) in counts.iter_mut().enumerate() {
         let (id, obstacle) = match kind {
@@ -169,24 +160,15 @@ pub fn measure_upserts<S: Number, const D: usize, const CAP: usize>(
             None => (0, scene::visitor(done % 2 == 0)),
         };
         clock.start();
-        put(&mut controller, id, obstacle);
-        let mut piece = clock.stop().ok_or(Overflow)?;
-        let mut count = piece;
-        let mut more = true;
-        while more {
-            longest_piece = longest_piece.max(piece);
-            clock.start();
-            more = settle(&mut controller);
-            piece = clock.stop().ok_or(Overflow)?;
-            count = count.checked_add(piece).ok_or(Overflow)?;
-        }
+        upsert(&mut controller, id, obstacle);
+        let count = clock.stop().ok_or(Overflow)?;
         *place = count;
         if count > whole.worst {
             (whole.worst, whole.worst_at) = (count, done as u32);
         }
     }
     whole.rank(counts);
-    Ok(UpsertFigures { whole, longest_piece })
+    Ok(whole)
 }
 
 /// What the part takes, and the command of a whole tick.
@@ -227,17 +209,12 @@ fn tick<S: Number, const D: usize, const CAP: usize>(
 }
 
 #[inline(never)]
-fn put<S: Number, const D: usize, const CAP: usize>(
+fn upsert<S: Number, const D: usize, const CAP: usize>(
     controller: &mut Controller<S, D, CAP>,
     id: u16,
     obstacle: Obstacle<S, D>,
 ) {
-    let _ = controller.put(id, obstacle, S::zero());
-}
-
-#[inline(never)]
-fn settle<S: Number, const D: usize, const CAP: usize>(controller: &mut Controller<S, D, CAP>) -> bool {
-    controller.table_mut().settle()
+    let _ = controller.upsert(id, obstacle, S::zero());
 }
 
 #[inline(never)]

@@ -7,21 +7,20 @@ use pliant_protocol::{FRAME_MAX, SCHEMA, ToDevice, ToHost, checksum, encode};
 
 use crate::host::{HERE, linear};
 
-/// A device in its two halves.
-pub struct Table {
+struct Table {
     desk: Desk<u8>,
-    pub control: Control,
+    control: Control,
 }
 
 impl Table {
-    pub fn say(&mut self, from: u8, sequence: u16, message: ToDevice) -> Option<ToHost> {
+    fn say(&mut self, from: u8, sequence: u16, message: ToDevice) -> Option<ToHost> {
         let mut room = [0; FRAME_MAX];
         let frame = encode(sequence, &message, &mut room).unwrap();
         self.desk.receive(from, frame, &mut self.control)
     }
 
     /// A host, 1, that drives.
-    pub fn driven() -> Self {
+    fn driven() -> Self {
         let desk = Desk::new(Identity { board: "test", firmware: [0, 1, 0] });
         let mut table = Self { desk, control: Control::new() };
         let mut room = [0; MODEL_MAX];

@@ -90,8 +90,6 @@ pub struct Upserts {
     pub p99: u32,
     /// The longest.
     pub worst: u32,
-    /// The longest of the pieces in which a device does it: no tick waits longer for it.
-    pub longest_piece: u32,
 }
 
 /// A digest of commands, from a board and from here.
@@ -238,7 +236,7 @@ mod tests {
         }
         let [ticks] = report.ticks.as_slice() else { panic!("{report:?}") };
         assert_eq!((ticks.instructions_per_tick, ticks.worst, ticks.scenes.len()), (5, 9, 3));
-        let line = r#"{"part":"upsert","room":64,"scene":"groups","dimension":2,"scalar":"f32","core":"M4","upserts":5,"median":1,"p99":2,"worst":3,"worst_at":4,"longest_piece":2}"#;
+        let line = r#"{"part":"upsert","room":64,"scene":"groups","dimension":2,"scalar":"f32","core":"M4","upserts":5,"median":1,"p99":2,"worst":3,"worst_at":4}"#;
         report.take(line, &mut |_| ());
         assert_eq!((report.upserts.len(), report.upserts[0].worst, report.ticks.len()), (1, 3, 1));
         report.take("something else", &mut |_| ());
