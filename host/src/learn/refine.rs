@@ -51,6 +51,8 @@ pub struct Task<'a, const D: usize> {
     pub x: &'a [SVector<f64, D>],
     /// Velocities.
     pub v: &'a [SVector<f64, D>],
+    /// How much each counts.
+    pub weight: &'a [f64],
     /// Demonstrations to roll out along.
     pub tracks: &'a [Path<D>],
     /// Of the errors.
@@ -101,8 +103,9 @@ impl<const D: usize> Task<'_, D> {
     fn velocities<const B: usize>(&self, field: &Field<D>, normal: &mut Normal) {
         let (n, parts) = (normal.n, field.parts.len());
         let base = parts * B;
-        let w = 1.0 / self.x.len().max(1) as f64;
-        for (x, v) in self.x.iter().zip(self.v) {
+        let share = 1.0 / self.weight.iter().sum::<f64>().max(1e-9);
+        for ((x, v), weight) in self.x.iter().zip(self.v).zip(self.weight) {
+            let w = share * weight;
             let local = field.at(x);
             let (cost, e, metric) = self.compare(&local.f, v);
             normal.cost += w * cost;
@@ -252,11 +255,12 @@ impl<const D: usize> Task<'_, D> {
     }
 
     fn cost<const B: usize>(&self, field: &Field<D>) -> f64 {
-        let mut cost = 0.0;
-        for (x, v) in self.x.iter().zip(self.v) {
-            cost += self.compare(&field.velocity(x), v).0;
+        let (mut cost, mut total) = (0.0, 0.0);
+        for ((x, v), weight) in self.x.iter().zip(self.v).zip(self.weight) {
+            cost += weight * self.compare(&field.velocity(x), v).0;
+            total += weight;
         }
-        cost / self.x.len().max(1) as f64 + self.rollouts::<B>(field, None)
+        cost / f64::max(total, 1e-9) + self.rollouts::<B>(field, None)
     }
 }
 
