@@ -205,6 +205,14 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         self.table.upsert(id, obstacle, age, &self.settings.ageing)
     }
 
+    /// The same without the search for overlaps; see [`Table::put`] and [`Table::settle`].
+    ///
+    /// # Errors
+    /// [`TableFull`]; then nothing has changed.
+    pub fn put(&mut self, id: u16, obstacle: Obstacle<S, D>, age: S) -> Result<(), TableFull> {
+        self.table.put(id, obstacle, age, &self.settings.ageing)
+    }
+
     /// Puts a scan in the place of the one before; see [`Table::set_scan`].
     pub fn set_scan(&mut self, scan: Scan<S, D>, age: S) {
         self.table.set_scan(scan, age, &self.settings.ageing);

@@ -1,13 +1,19 @@
 //! A point inside several hard cores at once, if there is one.
 
 use crate::obstacle::Obstacle;
-use crate::shape::Shape;
-use crate::{Matrix, Scalar, Vector, norm};
+use crate::shape::{Shape, root};
+use crate::{Matrix, Scalar, Vector, norm, unit};
 
-/// Steps of the search for a point that several cores have in common.
-const STEPS: u8 = 48;
+/// Steps of the search for a point that several cores have in common, and how much shorter each is than the one before: as deep as it gets,
+const STEPS: (u8, f64) = (48, 0.9);
+/// and where a point inside will do.
+const STEPS_INSIDE: (u8, f64) = (24, 0.82);
+/// Of those, after so many it ends where it is inside.
+const STEPS_WELL: u8 = 12;
 /// Halvings of the interval in which two ellipsoids have their common point.
 const HALVINGS: u8 = 26;
+/// Halvings of the way to where such a search starts.
+const HALVINGS_TO_START: u8 = 8;
 
 /// What a point that is searched for has to be inside of.
 #[derive(Clone, Copy)]
@@ -18,98 +24,189 @@ pub(crate) enum Inside<'a, S: Scalar, const D: usize> {
     Sight(&'a Obstacle<S, D>),
 }
 
-impl<S: Scalar, const D: usize> Inside<'_, S, D> {
-    /// Below one inside.
-    fn level(&self, x: &Vector<S, D>) -> S {
+impl<'a, S: Scalar, const D: usize> Inside<'a, S, D> {
+    /// Below one inside; and where that grows, for [`Obstacle::outward`].
+    fn look(&self, x: &Vector<S, D>) -> (S, Vector<S, D>) {
         match self {
-            Self::Core(o) => o.gamma(x),
+            Self::Core(o) => o.look(x),
             Self::Sight(o) => o.sight(x),
         }
     }
 
-    /// Where that grows.
-    fn slope(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        match self {
-            Self::Core(o) => o.gradient(x),
-            Self::Sight(o) => o.sight_slope(x),
-        }
+    /// Below one inside.
+    fn level(&self, x: &Vector<S, D>) -> S {
+        self.look(x).0
     }
 
-    fn outer(&self) -> S {
+    pub fn obstacle(&self) -> &'a Obstacle<S, D> {
         match self {
-            Self::Core(o) | Self::Sight(o) => o.outer(),
+            Self::Core(o) | Self::Sight(o) => o,
         }
     }
 }
 
-/// A point well inside both hard cores, m; `None` if they do not overlap.
-pub(crate) fn between<S: Scalar, const D: usize>(a: &Obstacle<S, D>, b: &Obstacle<S, D>) -> Option<Vector<S, D>> {
-    let (ca, cb) = (&a.spec().center, &b.spec().center);
-    let walls = a.spec().wall || b.spec().wall;
-    if a.spec().wall && b.spec().wall || !walls && norm(&(ca - cb)) > a.outer() + b.outer() {
-        return None;
+/// How deep inside a point is to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Depth {
+    /// Inside: the first point that is will do.
+    Any,
+    /// Well inside, if that is possible.
+    Well,
+    /// As deep as the search gets.
+    Most,
+}
+
+impl Depth {
+    /// The Gamma below which no deeper point is searched.
+    fn enough<S: Scalar>(self) -> S {
+        match self {
+            Self::Any => S::one(),
+            Self::Well => S::from_f64(0.5),
+            Self::Most => S::zero(),
+        }
     }
+}
+
+/// May these overlap, as far as balls round them say, and for what is inside a wall the corners of its box?
+pub(crate) fn are_near<S: Scalar, const D: usize>(a: &Obstacle<S, D>, b: &Obstacle<S, D>) -> bool {
+    match (a.spec().wall, b.spec().wall) {
+        (true, true) => false,
+        (true, false) => may_reach(a, b),
+        (false, true) => may_reach(b, a),
+        _ => norm(&(a.spec().center - b.spec().center)) <= a.outer() + b.outer(),
+    }
+}
+
+/// May an obstacle reach a wall?
+fn may_reach<S: Scalar, const D: usize>(wall: &Obstacle<S, D>, b: &Obstacle<S, D>) -> bool {
+    let gamma = wall.gamma(&b.spec().center);
+    let inside = gamma > S::one() && !wall.is_near(gamma, b.outer());
+    // Where the free space is convex it holds all that is between corners it holds.
+    let convex = !matches!(wall.spec().shape, Shape::Polygon(_));
+    !(inside || convex && (0..1 << D).all(|n| wall.gamma(&b.corner(n)) > S::one()))
+}
+
+/// A point inside both of two that [`are_near`], m; `None` if there is none.
+pub(crate) fn between<S: Scalar, const D: usize>(
+    a: Inside<'_, S, D>,
+    b: Inside<'_, S, D>,
+    depth: Depth,
+) -> Option<Vector<S, D>> {
+    let (one, other) = (a.obstacle(), b.obstacle());
     // Only the ratio of both counts, and squares of 1/axis leave some numbers' range.
     let most = |o: &Obstacle<S, D>| o.inverse_axes().iter().fold(S::zero(), |m, x| m.max(*x));
-    let scale = S::one() / most(a).max(most(b));
-    let point = match (ellipsoid(a, scale), ellipsoid(b, scale)) {
-        (Some(pa), Some(pb)) => between_ellipsoids(a, &pa, b, &pb),
-        _ if a.spec().wall => beyond_wall(a, b),
-        _ if b.spec().wall => beyond_wall(b, a),
-        _ => {
-            let start = on_the_way(a, cb, b);
-            return common(&[Inside::Core(a), Inside::Core(b)], &start);
+    let scale = S::one() / most(one).max(most(other));
+    let (gamma, start) = match (ellipsoid(one, scale), ellipsoid(other, scale)) {
+        (Some(p), Some(q)) => {
+            let (gamma, point) = between_ellipsoids(one, &p, other, &q, depth);
+            return (gamma < S::one()).then_some(point);
         }
+        _ if one.spec().wall => beyond_wall(one, &b, depth),
+        _ if other.spec().wall => beyond_wall(other, &a, depth),
+        _ => on_the_way(&a, &b, depth),
     };
-    let both = [Inside::Core(a), Inside::Core(b)];
-    if both.iter().all(|o| o.level(&point) < S::one()) {
-        return Some(point);
+    let walls = one.spec().wall || other.spec().wall;
+    if gamma < S::one() && (walls || depth != Depth::Most) {
+        return Some(start);
     }
-    // What sticks into a wall need not do so along the wall's normal.
-    if walls { common(&both, &point) } else { None }
+    // What sticks into a wall need not do so along the wall's normal, nor overlap on the way between the centres.
+    let members = [a, b];
+    let mut search = Search::new(&members, &start, depth);
+    while search.step(&members) {}
+    search.found()
 }
 
-/// A point inside all of these, m, searched from `start` by bounded steps: each away from the one it is least inside of, along
-/// that one's Gamma. `None` if none was found.
-pub(crate) fn common<S: Scalar, const D: usize>(
-    members: &[Inside<'_, S, D>],
-    start: &Vector<S, D>,
-) -> Option<Vector<S, D>> {
-    let mut x = *start;
-    let mut best: Option<(S, Vector<S, D>)> = None;
-    let mut step = members.iter().fold(S::MAX, |m, o| m.min(o.outer()));
-    for _ in 0..STEPS {
-        let worst = members.iter().map(|o| (o.level(&x), o)).reduce(|worst, o| if o.0 > worst.0 { o } else { worst });
-        let (gamma, obstacle) = worst?;
-        if best.as_ref().is_none_or(|(least, _)| gamma < *least) {
-            best = Some((gamma, x));
+/// A search for a point inside several cores by bounded steps: each away from the one it is least inside of, along that one's Gamma.
+#[derive(Clone, Debug)]
+pub(crate) struct Search<S: Scalar, const D: usize> {
+    x: Vector<S, D>,
+    best: Option<(S, Vector<S, D>)>,
+    /// The length of the next step, m.
+    step: S,
+    shrink: S,
+    left: u8,
+    depth: Depth,
+}
+
+impl<S: Scalar, const D: usize> Search<S, D> {
+    pub fn new(members: &[Inside<'_, S, D>], start: &Vector<S, D>, depth: Depth) -> Self {
+        let step = members.iter().fold(S::MAX, |m, o| m.min(o.obstacle().outer()));
+        let (left, shrink) = if depth == Depth::Most { STEPS } else { STEPS_INSIDE };
+        Self { x: *start, best: None, step, shrink: S::from_f64(shrink), left, depth }
+    }
+
+    /// One step; is there another? The members are the same for all.
+    pub fn step(&mut self, members: &[Inside<'_, S, D>]) -> bool {
+        let Some(left) = self.left.checked_sub(1) else { return false };
+        self.left = 0;
+        let x = &self.x;
+        let looks = members.iter().map(|o| (o.look(x), o));
+        let worst = looks.reduce(|worst, o| if o.0.0 > worst.0.0 { o } else { worst });
+        let Some(((gamma, slope), member)) = worst else { return false };
+        if self.best.as_ref().is_none_or(|(least, _)| gamma < *least) {
+            self.best = Some((gamma, *x));
         }
-        let slope = obstacle.slope(&x);
-        let length = norm(&slope);
-        if !(length > S::zero()) {
-            break;
+        let inside = self.best.as_ref().is_some_and(|(least, _)| *least < S::one());
+        if gamma < self.depth.enough() || inside && self.depth == Depth::Well && left < STEPS_INSIDE.0 - STEPS_WELL {
+            return false;
+        }
+        let (length, away) = unit(&member.obstacle().outward(&slope));
+        if !(length > S::zero()) || gamma >= S::one() && are_apart(members, member, x, gamma, &away) {
+            return false;
         }
         // A shrinking step: the maximum of convex functions has no other descent that is as simple.
-        x -= slope * (step / length);
-        step *= S::from_f64(0.9);
+        self.x -= away * self.step;
+        self.step *= self.shrink;
+        self.left = left;
+        left > 0
     }
-    best.filter(|(gamma, _)| *gamma < S::one()).map(|(_, x)| x)
+
+    /// The deepest point of the search, if it is inside all.
+    pub fn found(self) -> Option<Vector<S, D>> {
+        self.best.filter(|(gamma, _)| *gamma < S::one()).map(|(_, x)| x)
+    }
 }
 
+/// Is one of two members behind the tangent plane that the other, `one`, has on the ray from its centre to x, where it has this Gamma and its slope
+/// has this direction? Never true of two that overlap.
+fn are_apart<S: Scalar, const D: usize>(
+    members: &[Inside<'_, S, D>],
+    one: &Inside<'_, S, D>,
+    x: &Vector<S, D>,
+    gamma: S,
+    normal: &Vector<S, D>,
+) -> bool {
+    let [a, b] = members else { return false };
+    let other = if core::ptr::eq(a, one) { b.obstacle() } else { a.obstacle() };
+    let own = one.obstacle();
+    if own.spec().wall || other.spec().wall {
+        return false;
+    }
+    let along = |v: Vector<S, D>| S::dot(v.as_slice(), normal.as_slice());
+    let extent = match one {
+        // It may have notches.
+        Inside::Core(o) if matches!(o.spec().shape, Shape::Polygon(_)) => o.support(normal),
+        // The gauge is convex, and as steep along the whole ray.
+        _ => along(x - own.spec().center) / root(gamma, own.power()),
+    };
+    along(other.spec().center - own.spec().center) > extent + other.support(&-normal)
+}
+
+/// The greatest of both Gammas, and where.
+type Found<S, const D: usize> = (S, Vector<S, D>);
+
 /// Between the centres, the point where both Gammas are equal.
-fn on_the_way<S: Scalar, const D: usize>(a: &Obstacle<S, D>, to: &Vector<S, D>, b: &Obstacle<S, D>) -> Vector<S, D> {
-    let from = a.spec().center;
-    halve(|l| from + (to - from) * l, |x| a.gamma(x) < b.gamma(x))
+fn on_the_way<S: Scalar, const D: usize>(a: &Inside<'_, S, D>, b: &Inside<'_, S, D>, depth: Depth) -> Found<S, D> {
+    let (from, to) = (a.obstacle().spec().center, b.obstacle().spec().center);
+    halve(|l| from + (to - from) * l, |x| (a.level(x), b.level(x)), HALVINGS_TO_START, depth)
 }
 
 /// Out of a wall's free space along its normal at an obstacle's centre, the point where both Gammas are equal.
-fn beyond_wall<S: Scalar, const D: usize>(wall: &Obstacle<S, D>, b: &Obstacle<S, D>) -> Vector<S, D> {
-    let center = b.spec().center;
-    let into = -wall.gradient(&center);
-    let length = norm(&into);
-    let direction = if length > S::zero() { into / length } else { Vector::zeros() };
+fn beyond_wall<S: Scalar, const D: usize>(wall: &Obstacle<S, D>, b: &Inside<'_, S, D>, depth: Depth) -> Found<S, D> {
+    let (center, outer) = (b.obstacle().spec().center, b.obstacle().outer());
+    let (_, direction) = unit(&-wall.gradient(&center));
     // The wall's Gamma falls on the way out.
-    halve(|l| center + direction * (l * b.outer()), |x| b.gamma(x) < wall.gamma(x))
+    halve(|l| center + direction * (l * outer), |x| (b.level(x), wall.gamma(x)), HALVINGS, depth)
 }
 
 /// scale^2 Q diag(1/a^2) Q' of an ellipsoid, or nothing for all else.
@@ -124,13 +221,14 @@ fn ellipsoid<S: Scalar, const D: usize>(o: &Obstacle<S, D>, scale: S) -> Option<
 }
 
 /// The minimiser of max(Gamma_a, Gamma_b): x(l) = ((1-l) P_a + l P_b)^-1 ((1-l) P_a c_a + l P_b c_b), for the l in [0, 1] at which
-/// both are equal.
+/// both are equal. No other x(l) has both less: where both are 1 or more for any l, no point has.
 fn between_ellipsoids<S: Scalar, const D: usize>(
     a: &Obstacle<S, D>,
     pa: &Matrix<S, D>,
     b: &Obstacle<S, D>,
     pb: &Matrix<S, D>,
-) -> Vector<S, D> {
+    depth: Depth,
+) -> Found<S, D> {
     let (ca, cb) = (a.spec().center, b.spec().center);
     let apart = cb - ca;
     let at = |l: S| {
@@ -138,20 +236,32 @@ fn between_ellipsoids<S: Scalar, const D: usize>(
         let right = wb * apart;
         ca + solve(wa + wb, right)
     };
-    halve(at, |x| a.gamma(x) < b.gamma(x))
+    halve(at, |x| (a.gamma(x), b.gamma(x)), HALVINGS, depth)
 }
 
-/// The point at the end of a bisection: `early` says whether l is still too small.
+/// Along a way on which the first of two levels grows and the second falls: the point where both are equal; or the first one that is deep enough, or where
+/// both say that the whole way is outside of one.
 fn halve<S: Scalar, const D: usize>(
     at: impl Fn(S) -> Vector<S, D>,
-    early: impl Fn(&Vector<S, D>) -> bool,
-) -> Vector<S, D> {
+    levels: impl Fn(&Vector<S, D>) -> (S, S),
+    halvings: u8,
+    depth: Depth,
+) -> Found<S, D> {
     let (mut low, mut high) = (S::zero(), S::one());
-    for _ in 0..HALVINGS {
+    let mut left = halvings;
+    loop {
         let middle = (low + high) * S::from_f64(0.5);
-        if early(&at(middle)) { low = middle } else { high = middle }
+        let x = at(middle);
+        let (first, second) = levels(&x);
+        let (most, least) = (first.max(second), first.min(second));
+        // Of a point that need not be the deepest, a tenth more is not worth the way.
+        let near = depth != Depth::Most && most < S::one() && least > most * S::from_f64(0.9);
+        if most < depth.enough() || least >= S::one() || near || left == 0 {
+            return (most, x);
+        }
+        left -= 1;
+        if first < second { low = middle } else { high = middle }
     }
-    at((low + high) * S::from_f64(0.5))
 }
 
 /// The solution of m x = right for a positive definite m, by elimination.

@@ -8,6 +8,7 @@
 //! ```
 //!
 //! A step so short that this bound moves f by a hundredth of a(|x| + m) may not move it farther.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
 use pliant_core::{Component, LpvDs, Matrix, Scalar, Vector};
 use rand::{Rng, SeedableRng};

@@ -17,7 +17,8 @@ const CATCH_UP_TICKS: u32 = 100;
 
 /// The mode, the skill, the obstacles and the newest state.
 ///
-/// Everything that gets here was checked by the [`Desk`](crate::Desk), so every method is short and none fails halfway.
+/// Everything that gets here was checked by the [`Desk`](crate::Desk), so every method is short and none fails halfway. What takes long, the search for
+/// overlapping cores, is left to [`Control::settle`].
 #[derive(Debug)]
 pub struct Control {
     space: Option<Space>,
@@ -102,6 +103,13 @@ impl Control {
         self.step();
     }
 
+    /// One bounded piece of what changes of the obstacles have left to find out: which cores overlap now, and their reference points. False when nothing
+    /// is left. To be called again and again by whoever has the least urgent work, with the control half locked for one piece at a time: that is as long as
+    /// a tick may have to wait.
+    pub fn settle(&mut self) -> bool {
+        self.space.as_mut().is_some_and(Space::settle)
+    }
+
     /// The command of the last tick, once.
     pub fn take_report(&mut self) -> Option<ToHost> {
         self.report.take()
@@ -184,7 +192,7 @@ impl Control {
     pub(crate) fn upsert(&mut self, id: u16, obstacle: AnyObstacle, stamp: u64) -> Result<(), DeviceError> {
         let age = self.age(stamp);
         let space = self.space.as_mut().ok_or(DeviceError::NoModel)?;
-        match space.upsert(id, obstacle, age) {
+        match space.put(id, obstacle, age) {
             Ok(Ok(())) => Ok(()),
             Ok(Err(pliant_core::TableFull)) => Err(DeviceError::TableFull),
             Err(OtherDimension) => Err(DeviceError::Dimension),
@@ -211,7 +219,7 @@ impl Control {
 
     pub(crate) fn remove(&mut self, id: u16) -> Result<(), DeviceError> {
         let space = self.space.as_mut().ok_or(DeviceError::NoModel)?;
-        if space.remove(id) { Ok(()) } else { Err(DeviceError::UnknownObstacle) }
+        if space.take(id) { Ok(()) } else { Err(DeviceError::UnknownObstacle) }
     }
 
     pub(crate) fn clear(&mut self) {
@@ -233,6 +241,8 @@ impl Control {
         if self.tick_mode == TickMode::Timed {
             return Ok(None);
         }
+        // Nothing is urgent here, and commands must not depend on how fast the device is.
+        while self.settle() {}
         self.due = 1;
         self.step();
         self.tick = self.tick.wrapping_add(1);

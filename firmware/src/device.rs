@@ -19,7 +19,10 @@ impl Device {
 
     /// Takes one frame; the frame that answers it, if there is one.
     pub fn receive<'a>(&mut self, frame: &[u8], room: &'a mut [u8; FRAME_MAX]) -> Option<&'a [u8]> {
-        let answer = self.desk.receive((), frame, &mut self.control)?;
+        let answer = self.desk.receive((), frame, &mut self.control);
+        // No tick waits meanwhile.
+        while self.control.settle() {}
+        let answer = answer?;
         self.desk.frame(&answer, room)
     }
 

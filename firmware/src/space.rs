@@ -71,15 +71,16 @@ impl Space {
         }
     }
 
-    pub(crate) fn upsert(
+    /// Puts an obstacle into the table; [`Space::settle`] is to follow.
+    pub(crate) fn put(
         &mut self,
         id: u16,
         obstacle: AnyObstacle,
         age: f32,
     ) -> Result<Result<(), TableFull>, OtherDimension> {
         match (self, obstacle) {
-            (Self::Planar(c), InSpace::Planar(o)) => Ok(c.upsert(id, o, age)),
-            (Self::Spatial(c), InSpace::Spatial(o)) => Ok(c.upsert(id, o, age)),
+            (Self::Planar(c), InSpace::Planar(o)) => Ok(c.put(id, o, age)),
+            (Self::Spatial(c), InSpace::Spatial(o)) => Ok(c.put(id, o, age)),
             _ => Err(OtherDimension),
         }
     }
@@ -102,10 +103,19 @@ impl Space {
         }
     }
 
-    pub(crate) fn remove(&mut self, id: u16) -> bool {
+    /// Takes an obstacle out; [`Space::settle`] is to follow.
+    pub(crate) fn take(&mut self, id: u16) -> bool {
         match self {
-            Self::Planar(c) => c.table_mut().remove(id),
-            Self::Spatial(c) => c.table_mut().remove(id),
+            Self::Planar(c) => c.table_mut().take(id),
+            Self::Spatial(c) => c.table_mut().take(id),
+        }
+    }
+
+    /// One piece of the search for cores that overlap; false when nothing is left.
+    pub(crate) fn settle(&mut self) -> bool {
+        match self {
+            Self::Planar(c) => c.table_mut().settle(),
+            Self::Spatial(c) => c.table_mut().settle(),
         }
     }
 

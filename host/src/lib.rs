@@ -10,6 +10,7 @@ pub mod import;
 pub mod learn;
 pub mod model;
 pub mod plot;
+pub mod proof;
 pub mod scene;
 pub mod sim;
 pub mod study;

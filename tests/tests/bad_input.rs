@@ -127,6 +127,17 @@ fn models() {
     let scene = SCENE.replacen("linear = { attractor = [0.0, 0.0], gain = 1.0 }", "model = \"unstable.toml\"", 1);
     folder.write("scene.toml", scene);
     refused(&folder, &["run", "scene.toml"], &["unstable.toml", "component 2"]);
+    // An entry of any one matrix, or P for another: the component at fault is named.
+    for (k, (at, _)) in good.match_indices("\na = [[").enumerate() {
+        let from = at + "\na = [[".len();
+        let to = from + good[from..].find(',').unwrap();
+        folder.write("edited.toml", format!("{}900.0{}", &good[..from], &good[to..]));
+        refused(&folder, &["check", "edited.toml"], &[&format!("component {}:", k + 1), "not negative definite"]);
+    }
+    let at = good.find("lyapunov = ").unwrap();
+    let end = at + good[at..].find("]]").unwrap() + 2;
+    folder.write("edited.toml", format!("{}lyapunov = [[1.0, 0.0], [0.0, 1e-5]]{}", &good[..at], &good[end..]));
+    refused(&folder, &["check", "edited.toml"], &["component ", "not negative definite"]);
     let cases: &[(&str, &str, &str)] = &[
         ("dimension = 2", "dimension = 7", "dimension"),
         ("format = 1", "format = 9", "format"),

@@ -32,7 +32,12 @@ fn boards_compute_the_same_bits_and_count_instructions() {
     assert!(typical("Cortex-M4F", 3, 0) < typical("Cortex-M4F", 3, 16));
     assert!(typical("Cortex-M0", 2, 0) < typical("Cortex-M0", 2, 8));
     let upserts = report["upserts"].as_array().unwrap();
-    assert_eq!(upserts.len(), 4, "{report}");
+    assert_eq!(upserts.len(), 8, "{report}");
     assert!(upserts.iter().all(|u| u["worst"].as_u64() >= u["median"].as_u64() && u["median"].as_u64() > Some(100)));
+    assert!(
+        upserts
+            .iter()
+            .all(|u| u["longest_piece"].as_u64() > Some(100) && u["longest_piece"].as_u64() <= u["worst"].as_u64())
+    );
     assert!(ticks.iter().all(|t| t["worst"].as_u64() >= t["instructions_per_tick"].as_u64()));
 }

@@ -269,6 +269,24 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.spec.shape.outer() * largest
     }
 
+    /// The largest n.(x - c) of all x in the hard core, or somewhat more, m, for n of unit length.
+    pub(crate) fn support(&self, n: &Vector<S, D>) -> S {
+        let w = transposed_times(&self.spec.rotation, n).component_div(&self.hard);
+        self.body.support(&self.spec.shape, &w)
+    }
+
+    /// A corner of the box along its axes that holds the hard core, m: bit i of n says on which side along axis i.
+    pub(crate) fn corner(&self, n: usize) -> Vector<S, D> {
+        let half = self.spec.shape.extent().component_div(&self.unit.component_mul(&self.hard));
+        let corner = Vector::from_fn(|i, _| if n >> i & 1 == 0 { half[i] } else { -half[i] });
+        self.spec.center + times(&self.spec.rotation, &corner)
+    }
+
+    /// p: Gamma is the gauge to the power of 2p.
+    pub(crate) fn power(&self) -> u8 {
+        self.body.power()
+    }
+
     /// u = diag(hard) Q' (x - c)
     #[inline(always)]
     fn scaled(&self, x: &Vector<S, D>) -> Vector<S, D> {

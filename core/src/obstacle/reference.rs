@@ -12,15 +12,23 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.spec.center + self.offset
     }
 
-    /// Below 1 where its reference point may be (not a wall's): Gamma, but of a polygon by what is seen from there.
-    pub(crate) fn sight(&self, x: &Vector<S, D>) -> S {
-        self.body.sight(&self.spec.shape, &self.scaled(x)).0
+    /// Below 1 where its reference point may be (not a wall's): Gamma, but of a polygon by what is seen from there. And where it grows, for
+    /// [`Obstacle::outward`].
+    pub(crate) fn sight(&self, x: &Vector<S, D>) -> (S, Vector<S, D>) {
+        self.body.sight(&self.spec.shape, &self.scaled(x))
     }
 
-    /// The direction in which that grows.
-    pub(crate) fn sight_slope(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        let u = self.scaled(x);
-        transposed_times(&self.scaling, &self.body.sight(&self.spec.shape, &u).1)
+    /// Gamma, and where it grows, likewise.
+    pub(crate) fn look(&self, x: &Vector<S, D>) -> (S, Vector<S, D>) {
+        let (gamma, direction) = self.level(&self.scaled(x));
+        (gamma, if self.spec.wall { -direction } else { direction })
+    }
+
+    /// A direction of scaled coordinates, as a normal in the world's frame, of any length.
+    pub(crate) fn outward(&self, direction: &Vector<S, D>) -> Vector<S, D> {
+        // Scaled by one over the shortest axis a normal could leave the range.
+        let most = self.hard.iter().fold(S::zero(), |m, x| m.max(*x));
+        times(&self.spec.rotation, &direction.zip_map(&self.hard, |d, hard| d * (hard / most)))
     }
 
     /// The reference point of the root of the tree it belongs to (world's frame, m), where r leads from as far as it can; see [`Obstacle::arm`].

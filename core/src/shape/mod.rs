@@ -251,6 +251,16 @@ impl<S: Scalar, const D: usize> Body<S, D> {
         }
     }
 
+    /// The largest w.u of all u inside, or somewhat more.
+    pub fn support(&self, shape: &Shape<S, D>, w: &Vector<S, D>) -> S {
+        match (self, shape) {
+            (Self::Superellipsoid(body), _) => body.support(w),
+            (Self::Rounded(body), _) => body.support(w),
+            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).support(w),
+            _ => S::MAX,
+        }
+    }
+
     /// Half-spaces that keep a point out of the body, or inside it as a wall; see [`Surface::keep_out`].
     pub fn keep_out(&self, shape: &Shape<S, D>, at: &Place<'_, S, D>, keep: impl FnMut(Vector<S, D>, S)) {
         match (self, shape) {

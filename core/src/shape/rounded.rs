@@ -82,6 +82,11 @@ impl<S: Scalar, const D: usize> Rounded<S, D> {
         Gauge { lambda, gradient }
     }
 
+    /// The largest w.u of all u inside.
+    pub fn support(&self, w: &Vector<S, D>) -> S {
+        self.distances(w).component_mul(&self.half).iter().fold(S::norm(w.as_slice()) * self.radius, |sum, h| sum + *h)
+    }
+
     /// Radius of the largest ball inside.
     pub fn inner(&self) -> S {
         let flat = |i: usize| self.turned && i == 1;

@@ -9,6 +9,20 @@ pub(crate) struct Superellipsoid {
     pub p: u8,
 }
 
+impl Superellipsoid {
+    /// The largest w.u of all u inside, or somewhat more: as for the ball and the box that hold it.
+    pub fn support<S: Scalar, const D: usize>(&self, w: &Vector<S, D>) -> S {
+        let length = S::norm(w.as_slice());
+        if self.p == 1 {
+            return length;
+        }
+        // |u|_2 <= d^(1/2 - 1/2p) where |u|_2p <= 1.
+        let d = w.iter().fold(S::zero(), |d, _| d + S::one());
+        let ball = length * (d.sqrt() / root(d, self.p));
+        ball.min(w.iter().fold(S::zero(), |sum, w| sum + w.abs()))
+    }
+}
+
 impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
     fn level(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
         if self.p == 1 {

@@ -8,25 +8,74 @@
 //! A polygon is to be seen whole from its reference point; it takes no other, and where that leaves none keeps its own.
 
 use super::Entry;
-use crate::overlap::{self, Inside};
+use crate::overlap::{self, Depth, Inside, Search};
 use crate::{Obstacle, Scalar, Shape, Status, Vector};
 
 /// Largest cluster that is searched for one common point; larger ones are taken as trees.
 const COMMON: usize = 8;
+/// Gammas that a piece of such a search takes, at most one a member more.
+const GAMMAS: usize = 32;
 
-/// Who overlaps whom, by places in the table.
+/// Who overlaps whom, by places in the table, and what is still to be found out.
+///
+/// A change only notes what is to be done. That is done piece by piece, in rounds: first who overlaps those that have changed, then the reference points
+/// of all clusters that they were in or are in.
 #[derive(Clone, Debug)]
-pub(super) struct Clusters<const CAP: usize> {
+pub(super) struct Clusters<S: Scalar, const D: usize, const CAP: usize> {
     /// Bit j of the i-th: do i and j overlap?
     neighbours: [u64; CAP],
     /// Members of clusters without a common reference point.
     unshared: u64,
+    /// For the next round: who has changed, and whose reference points may be others.
+    changed: u64,
+    affected: u64,
+    /// The same in this round.
+    searched: u64,
+    referred: u64,
+    /// Whom the first of the searched has not been compared with yet, where that has begun.
+    others: Option<u64>,
+    task: Task<S, D>,
 }
 
-impl<const CAP: usize> Clusters<CAP> {
+/// Reference points that are being found.
+#[derive(Clone, Debug)]
+enum Task<S: Scalar, const D: usize> {
+    None,
+    /// One for all of this cluster.
+    Common {
+        cluster: u64,
+        search: Search<S, D>,
+    },
+    /// One for each below a root.
+    Tree(Tree<S, D>),
+}
+
+/// What is to be done about a cluster.
+enum Next<S: Scalar, const D: usize> {
+    Search(Search<S, D>),
+    Shared(Vector<S, D>),
+    Tree,
+}
+
+/// A cluster that is gone through as a tree.
+#[derive(Clone, Debug)]
+struct Tree<S: Scalar, const D: usize> {
+    cluster: u64,
+    /// The root's reference point, unless it is a wall.
+    hub: Option<Vector<S, D>>,
+    reached: u64,
+    /// Whose children come next, and those children: of this parent the ones that are left.
+    front: u64,
+    next: u64,
+    parent: usize,
+    children: u64,
+}
+
+impl<S: Scalar, const D: usize, const CAP: usize> Clusters<S, D, CAP> {
     pub fn new() -> Self {
         const { assert!(CAP <= 64, "a table has at most 64 obstacles") };
-        Self { neighbours: [0; CAP], unshared: 0 }
+        let (neighbours, others, task) = ([0; CAP], None, Task::None);
+        Self { neighbours, unshared: 0, changed: 0, affected: 0, searched: 0, referred: 0, others, task }
     }
 
     pub fn status(&self) -> Status {
@@ -34,134 +83,214 @@ impl<const CAP: usize> Clusters<CAP> {
     }
 
     /// The obstacle at `index` is new or has changed.
-    pub fn changed<S: Scalar, const D: usize>(&mut self, index: usize, entries: &mut [Entry<S, D>]) {
-        let before = self.connected(1 << index);
-        let mut own = 0;
-        if let Some(changed) = entries.get(index) {
-            for (j, other) in entries.iter().enumerate() {
-                if j != index && ordered(changed, other).is_some() {
-                    own |= 1 << j;
+    pub fn changed(&mut self, index: usize) {
+        let bit = 1 << index;
+        self.affected |= self.connected(bit);
+        for row in &mut self.neighbours {
+            *row &= !bit;
+        }
+        if let Some(row) = self.neighbours.get_mut(index) {
+            *row = 0;
+        }
+        if self.searched & bit == 0 {
+            self.changed |= bit;
+        } else if bits(self.searched).next() == Some(index) {
+            self.others = None;
+        }
+    }
+
+    /// The obstacle at `index` was taken out, and the one at `last`, if it was another, put in its place.
+    pub fn removed(&mut self, index: usize, last: usize) {
+        self.affected |= self.connected(1 << index);
+        // What had begun begins again.
+        self.others = None;
+        self.referred |= match core::mem::replace(&mut self.task, Task::None) {
+            Task::None => 0,
+            Task::Common { cluster, .. } | Task::Tree(Tree { cluster, .. }) => cluster,
+        };
+        let moved = self.neighbours.get_mut(last).map(core::mem::take).unwrap_or_default();
+        if let Some(row) = self.neighbours.get_mut(index) {
+            *row = if index == last { 0 } else { moved };
+        }
+        let renamed = |bits: &mut u64| {
+            let rest = *bits & !(1 << index) & !(1 << last);
+            *bits = if index == last { rest } else { rest | (*bits >> last & 1) << index };
+        };
+        self.neighbours.iter_mut().for_each(renamed);
+        [&mut self.unshared, &mut self.changed, &mut self.affected, &mut self.searched, &mut self.referred]
+            .into_iter()
+            .for_each(renamed);
+    }
+
+    /// Does one piece of what is to be done: one pair of cores, a part of a search for a point in common, or the reference point of one obstacle. False when
+    /// nothing is left.
+    pub fn settle(&mut self, entries: &mut [Entry<S, D>]) -> bool {
+        match core::mem::replace(&mut self.task, Task::None) {
+            Task::Common { cluster, search } => self.search(cluster, search, entries),
+            Task::Tree(tree) => self.grow(tree, entries),
+            Task::None => {
+                if let Some(index) = bits(self.searched).next() {
+                    self.compare(index, entries);
+                } else if let Some(first) = bits(self.referred).next() {
+                    self.begin(first, entries);
+                } else {
+                    self.searched = core::mem::take(&mut self.changed);
+                    self.referred = core::mem::take(&mut self.affected);
+                    return self.searched | self.referred != 0;
                 }
             }
         }
-        for (j, row) in self.neighbours.iter_mut().enumerate() {
-            *row = (*row & !(1 << index)) | (own >> j & 1) << index;
-        }
-        if let Some(row) = self.neighbours.get_mut(index) {
-            *row = own;
-        }
-        let after = self.connected(1 << index);
-        self.share(before | after, entries);
-    }
-
-    /// The obstacle at `index` was taken out, and the last one, if it was another, put in its place.
-    pub fn removed<S: Scalar, const D: usize>(&mut self, index: usize, entries: &mut [Entry<S, D>]) {
-        let last = entries.len();
-        let before = self.connected(1 << index);
-        let moved = self.neighbours.get_mut(last).map(core::mem::take).unwrap_or_default();
-        if let Some(row) = self.neighbours.get_mut(index) {
-            *row = moved;
-        }
-        let renamed = |bits: u64| {
-            let rest = bits & !(1 << index) & !(1 << last);
-            if index == last { rest } else { rest | (bits >> last & 1) << index }
-        };
-        for row in &mut self.neighbours {
-            *row = renamed(*row);
-        }
-        self.unshared = renamed(self.unshared);
-        self.share(renamed(before), entries);
+        true
     }
 
     /// Everything connected with any of these.
     fn connected(&self, seed: u64) -> u64 {
-        let mut all = seed;
-        loop {
-            let next = bits(all).filter_map(|i| self.neighbours.get(i)).fold(all, |all, row| all | row);
-            if next == all {
-                return all;
+        let (mut all, mut front) = (seed, seed);
+        while front != 0 {
+            let next = bits(front).filter_map(|i| self.neighbours.get(i)).fold(0, |all, row| all | row);
+            front = next & !all;
+            all |= next;
+        }
+        all
+    }
+
+    /// Compares the obstacle at `index` with others, up to the first that is near.
+    fn compare(&mut self, index: usize, entries: &[Entry<S, D>]) {
+        // Those that come after it are compared with it then.
+        let later = self.searched | self.changed;
+        let mut others = self.others.unwrap_or(u64::MAX) & !later;
+        if let Some(one) = entries.get(index) {
+            for (j, other) in entries.iter().enumerate() {
+                if others >> j & 1 == 0 {
+                    continue;
+                }
+                others &= !(1 << j);
+                if overlap::are_near(&one.obstacle, &other.obstacle) {
+                    if ordered(core(one), core(other), Depth::Any).is_some() {
+                        self.link(index, j);
+                        self.link(j, index);
+                    }
+                    self.others = Some(others);
+                    return;
+                }
             }
-            all = next;
+        }
+        self.others = None;
+        self.searched &= !(1 << index);
+        self.referred |= self.connected(1 << index);
+    }
+
+    fn link(&mut self, from: usize, to: usize) {
+        if let Some(row) = self.neighbours.get_mut(from) {
+            *row |= 1 << to;
         }
     }
 
-    /// Finds reference points for these, cluster by cluster.
-    fn share<S: Scalar, const D: usize>(&mut self, mut affected: u64, entries: &mut [Entry<S, D>]) {
-        while let Some(first) = bits(affected).next() {
-            let cluster = self.connected(1 << first);
-            affected &= !cluster;
+    /// Begins to find reference points for the cluster of the obstacle at `first`.
+    fn begin(&mut self, first: usize, entries: &mut [Entry<S, D>]) {
+        let cluster = self.connected(1 << first);
+        self.referred &= !cluster;
+        if cluster.count_ones() == 1 {
             self.unshared &= !cluster;
-            match cluster.count_ones() {
-                1 => refer(entries, first, None),
-                _ => self.share_one(cluster, entries),
+            return refer(entries, first, None);
+        }
+        let next = match self.together(cluster, entries).as_deref() {
+            None => Next::Tree,
+            Some([Inside::Sight(a), Inside::Sight(b)]) if !is_polygon(a) && !is_polygon(b) => {
+                overlap::between(Inside::Core(a), Inside::Core(b), Depth::Most).map_or(Next::Tree, Next::Shared)
             }
+            Some(members) => Next::Search(Search::new(members, &amidst(members), Depth::Most)),
+        };
+        self.go_on(cluster, next, entries);
+    }
+
+    fn go_on(&mut self, cluster: u64, next: Next<S, D>, entries: &mut [Entry<S, D>]) {
+        match next {
+            Next::Search(search) => self.task = Task::Common { cluster, search },
+            Next::Shared(point) => self.share(cluster, &point, entries),
+            Next::Tree => self.plant(cluster, entries),
         }
     }
 
-    fn share_one<S: Scalar, const D: usize>(&mut self, cluster: u64, entries: &mut [Entry<S, D>]) {
-        if let Some(point) = self.common_point(cluster, entries) {
-            bits(cluster).for_each(|i| refer(entries, i, Some(&point)));
-            return;
+    /// The members of a small cluster without a wall in which each overlaps each, where they may have their reference points.
+    fn together<'a>(
+        &self,
+        cluster: u64,
+        entries: &'a [Entry<S, D>],
+    ) -> Option<heapless::Vec<Inside<'a, S, D>, COMMON>> {
+        let mut members = heapless::Vec::new();
+        for i in by_id(cluster, entries) {
+            let member = &entries.get(i)?.obstacle;
+            if member.spec().wall || *self.neighbours.get(i)? | 1 << i != cluster {
+                return None;
+            }
+            members.push(Inside::Sight(member)).ok()?;
         }
+        Some(members)
+    }
+
+    /// Goes on with the search for a point inside all hard cores of a cluster, from which each polygon is seen whole.
+    fn search(&mut self, cluster: u64, mut search: Search<S, D>, entries: &mut [Entry<S, D>]) {
+        let next = match self.together(cluster, entries).as_deref() {
+            // Something has changed in between, and all of this is done again in the next round.
+            None => Next::Tree,
+            Some(members) => {
+                let (mut gammas, mut more) = (0, true);
+                while more && gammas < GAMMAS {
+                    gammas += members.len();
+                    more = search.step(members);
+                }
+                if more { Next::Search(search) } else { search.found().map_or(Next::Tree, Next::Shared) }
+            }
+        };
+        self.go_on(cluster, next, entries);
+    }
+
+    /// This is where all of a cluster have their reference points.
+    fn share(&mut self, cluster: u64, point: &Vector<S, D>, entries: &mut [Entry<S, D>]) {
+        self.unshared &= !cluster;
+        bits(cluster).for_each(|i| refer(entries, i, Some(point)));
+    }
+
+    /// Begins to go through a cluster as a tree.
+    fn plant(&mut self, cluster: u64, entries: &mut [Entry<S, D>]) {
         self.unshared |= cluster;
         let Some(root) = self.root(cluster, entries) else { return };
         refer(entries, root, None);
         let hub = entries.get(root).filter(|e| !e.obstacle.spec().wall).map(|e| e.obstacle.reference());
-        let (mut reached, mut front) = (1u64 << root, 1u64 << root);
-        while front != 0 {
-            let mut next = 0;
-            loop {
-                let next_parent = by_id(front, entries).next();
-                let Some(parent) = next_parent else { break };
-                front &= !(1 << parent);
-                for child in bits(self.neighbours.get(parent).copied().unwrap_or_default() & !reached) {
-                    let point = towards_parent(entries, parent, child);
-                    refer(entries, child, point.as_ref());
-                    if let Some(entry) = entries.get_mut(child) {
-                        entry.obstacle.lean_towards(hub.as_ref());
-                    }
-                    (reached, next) = (reached | 1 << child, next | 1 << child);
-                }
-            }
-            front = next;
-        }
+        let bit = 1 << root;
+        self.task = Task::Tree(Tree { cluster, hub, reached: bit, front: bit, next: 0, parent: root, children: 0 });
     }
 
-    /// A point inside all hard cores of a small cluster without a wall, from which each polygon is seen whole.
-    fn common_point<S: Scalar, const D: usize>(&self, cluster: u64, entries: &[Entry<S, D>]) -> Option<Vector<S, D>> {
-        let mut members: heapless::Vec<Inside<'_, S, D>, COMMON> = heapless::Vec::new();
-        if cluster.count_ones() as usize > COMMON {
-            return None;
+    /// Goes on through a tree, up to the next child.
+    fn grow(&mut self, mut tree: Tree<S, D>, entries: &mut [Entry<S, D>]) {
+        if tree.reached == tree.cluster {
+            return;
         }
-        let mut polygons = false;
-        for i in by_id(cluster, entries) {
-            let member = &entries.get(i)?.obstacle;
-            if member.spec().wall {
-                return None;
+        while tree.children == 0 {
+            if tree.front == 0 {
+                (tree.front, tree.next) = (tree.next, 0);
             }
-            polygons |= is_polygon(member);
-            members.push(Inside::Sight(member)).ok()?;
+            let parent = by_id(tree.front, entries).next();
+            let Some(parent) = parent else { return };
+            tree.front &= !(1 << parent);
+            tree.children = self.neighbours.get(parent).copied().unwrap_or_default() & !tree.reached;
+            tree.parent = parent;
         }
-        if let [Inside::Sight(a), Inside::Sight(b)] = members.as_slice()
-            && !polygons
-        {
-            return overlap::between(a, b);
+        let Some(child) = bits(tree.children).next() else { return };
+        let bit = 1 << child;
+        tree.children &= !bit;
+        (tree.reached, tree.next) = (tree.reached | bit, tree.next | bit);
+        let point = towards_parent(entries, tree.parent, child);
+        refer(entries, child, point.as_ref());
+        if let Some(entry) = entries.get_mut(child) {
+            entry.obstacle.lean_towards(tree.hub.as_ref());
         }
-        let mut start = Vector::zeros();
-        let mut share = S::zero();
-        for i in by_id(cluster, entries) {
-            for j in by_id(self.neighbours.get(i).copied()?, entries) {
-                let point = overlap(entries, i, j)?;
-                // A running mean, so that no sum leaves the range.
-                share += S::one();
-                start += (point - start) / share;
-            }
-        }
-        overlap::common(&members, &start)
+        self.task = Task::Tree(tree);
     }
 
     /// Where the tree begins: the wall, or else who overlaps most others, of equals a polygon, for it may not be seen from elsewhere.
-    fn root<S: Scalar, const D: usize>(&self, cluster: u64, entries: &[Entry<S, D>]) -> Option<usize> {
+    fn root(&self, cluster: u64, entries: &[Entry<S, D>]) -> Option<usize> {
         bits(cluster)
             .filter_map(|i| entries.get(i).map(|e| (i, e)))
             .max_by_key(|(i, e)| {
@@ -175,14 +304,31 @@ impl<const CAP: usize> Clusters<CAP> {
     }
 }
 
-/// A point that two of the table's obstacles have in common; whatever their places, for which obstacle is where must not matter.
-fn overlap<S: Scalar, const D: usize>(entries: &[Entry<S, D>], i: usize, j: usize) -> Option<Vector<S, D>> {
-    ordered(entries.get(i)?, entries.get(j)?)
+/// Where the search for a point in common starts: amidst the centres, with the weights 1/outer^2, for a point of all lies in the smallest.
+fn amidst<S: Scalar, const D: usize>(members: &[Inside<'_, S, D>]) -> Vector<S, D> {
+    let smallest = members.iter().fold(S::MAX, |m, o| m.min(o.obstacle().outer()));
+    let (mut weights, mut mean) = (S::zero(), Vector::zeros());
+    for member in members {
+        let ratio = smallest / member.obstacle().outer();
+        let weight = ratio * ratio;
+        weights += weight;
+        // A running mean, so that no sum leaves the range.
+        mean += (member.obstacle().spec().center - mean) * (weight / weights);
+    }
+    mean
 }
 
-fn ordered<S: Scalar, const D: usize>(a: &Entry<S, D>, b: &Entry<S, D>) -> Option<Vector<S, D>> {
-    let (a, b) = if a.id < b.id { (a, b) } else { (b, a) };
-    overlap::between(&a.obstacle, &b.obstacle)
+/// A point that two have in common; whatever their places, for which obstacle is where must not matter.
+fn ordered<'a, S: Scalar, const D: usize>(
+    (a, of_a): (&'a Entry<S, D>, Inside<'a, S, D>),
+    (b, of_b): (&'a Entry<S, D>, Inside<'a, S, D>),
+    depth: Depth,
+) -> Option<Vector<S, D>> {
+    if a.id < b.id { overlap::between(of_a, of_b, depth) } else { overlap::between(of_b, of_a, depth) }
+}
+
+fn core<S: Scalar, const D: usize>(entry: &Entry<S, D>) -> (&Entry<S, D>, Inside<'_, S, D>) {
+    (entry, Inside::Core(&entry.obstacle))
 }
 
 /// Where a child refers to: from the overlap with its parent on towards the parent's reference point, as far as the child's own core goes. Then in the
@@ -192,23 +338,33 @@ fn towards_parent<S: Scalar, const D: usize>(
     parent: usize,
     child: usize,
 ) -> Option<Vector<S, D>> {
-    let mut point = overlap(entries, parent, child)?;
-    let (parent, child) = (&entries.get(parent)?.obstacle, &entries.get(child)?.obstacle);
-    if is_polygon(child) {
-        point = overlap::common(&[Inside::Sight(child), Inside::Core(parent)], &point)?;
+    let (parent, child) = (entries.get(parent)?, entries.get(child)?);
+    if !overlap::are_near(&parent.obstacle, &child.obstacle) {
+        // They have moved apart since they were compared.
+        return None;
     }
+    let inside = if child.obstacle.spec().wall { core(child) } else { (child, Inside::Sight(&child.obstacle)) };
+    let point = ordered(core(parent), inside, Depth::Well)?;
+    let (parent, child) = (&parent.obstacle, &child.obstacle);
     if parent.spec().wall {
         return Some(point);
     }
     let way = parent.reference() - point;
-    let inside = S::from_f64(0.8);
+    let (inside, nearly) = (S::from_f64(0.8), S::from_f64(0.76));
     let (mut reached, mut step) = (S::zero(), S::one());
     for _ in 0..12 {
         let further = reached + step;
-        if further <= S::one() && child.sight(&(point + way * further)) <= inside {
-            reached = further;
-        }
         step *= S::from_f64(0.5);
+        if further > S::one() {
+            break;
+        }
+        let level = child.sight(&(point + way * further)).0;
+        if level <= inside {
+            reached = further;
+            if level > nearly {
+                break;
+            }
+        }
     }
     Some(point + way * reached)
 }

@@ -57,7 +57,7 @@ pub struct TableFull;
 #[derive(Clone, Debug)]
 pub struct Table<S: Scalar, const D: usize, const CAP: usize> {
     entries: heapless::Vec<Entry<S, D>, CAP>,
-    clusters: Clusters<CAP>,
+    clusters: Clusters<S, D, CAP>,
     scan: Scan<S, D>,
     revision: u32,
 }
@@ -79,13 +79,29 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     ///
     /// # Errors
     /// [`TableFull`]; then nothing has changed.
-    pub fn upsert(
-        &mut self,
-        id: u16,
-        mut obstacle: Obstacle<S, D>,
-        age: S,
-        ageing: &Ageing<S>,
-    ) -> Result<(), TableFull> {
+    pub fn upsert(&mut self, id: u16, obstacle: Obstacle<S, D>, age: S, ageing: &Ageing<S>) -> Result<(), TableFull> {
+        self.put(id, obstacle, age, ageing)?;
+        while self.settle() {}
+        Ok(())
+    }
+
+    /// The same without looking which cores overlap: [`Table::settle`] does that, and until it has all others have the reference points they had.
+    ///
+    /// ```
+    /// use pliant_core::{Ageing, Obstacle, ObstacleSpec, Table, Vector};
+    /// let at = |x: f64| Obstacle::new(ObstacleSpec { center: Vector::<f64, 2>::new(x, 0.0), ..ObstacleSpec::default() }).unwrap();
+    /// let mut table: Table<f64, 2, 4> = Table::new();
+    /// table.put(1, at(0.0), 0.0, &Ageing::default()).unwrap();
+    /// table.put(2, at(0.08), 0.0, &Ageing::default()).unwrap();
+    /// let first = |t: &Table<f64, 2, 4>| t.iter().next().unwrap().obstacle().reference().x;
+    /// assert_eq!(first(&table), 0.0);
+    /// while table.settle() {}
+    /// assert!((first(&table) - 0.04).abs() < 1e-6);
+    /// ```
+    ///
+    /// # Errors
+    /// [`TableFull`]; then nothing has changed.
+    pub fn put(&mut self, id: u16, mut obstacle: Obstacle<S, D>, age: S, ageing: &Ageing<S>) -> Result<(), TableFull> {
         let age = age.max(S::zero()).min(ageing.hold);
         if age > S::zero() {
             obstacle.carry(age);
@@ -108,20 +124,33 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 self.entries.len().saturating_sub(1)
             }
         };
-        self.clusters.changed(index, &mut self.entries);
+        self.clusters.changed(index);
         self.revision = self.revision.wrapping_add(1);
         Ok(())
     }
 
     /// Takes an obstacle out; was it there?
     pub fn remove(&mut self, id: u16) -> bool {
+        let found = self.take(id);
+        while self.settle() {}
+        found
+    }
+
+    /// The same without finding reference points for those it overlapped; see [`Table::settle`].
+    pub fn take(&mut self, id: u16) -> bool {
         let Some(index) = self.entries.iter().position(|e| e.id == id) else {
             return false;
         };
         self.entries.swap_remove(index);
-        self.clusters.removed(index, &mut self.entries);
+        self.clusters.removed(index, self.entries.len());
         self.revision = self.revision.wrapping_add(1);
         true
+    }
+
+    /// Does one bounded piece of the search for cores that overlap, after [`Table::put`] and [`Table::take`]; false when nothing is left. Changes may come
+    /// and time may pass between two pieces; each is computed from where the obstacles are then.
+    pub fn settle(&mut self) -> bool {
+        self.clusters.settle(&mut self.entries)
     }
 
     /// Puts a scan in the place of the one before; `age` is how many seconds ago it was taken. One without points takes it away.

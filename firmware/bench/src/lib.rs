@@ -6,6 +6,7 @@
 //! | [`scene`] | controllers full of obstacles of every shape and motion |
 //! | [`stream`] | what happens to one: positions on boundaries, in intersections, at centres; obstacles that rush in |
 //! | [`field`] | obstacles to measure one velocity among |
+//! | [`skill`] | a learnt motion to measure one nominal velocity of |
 //! | [`timing`] | what a tick takes, by whatever [`Clock`](timing::Clock) there is |
 //! | [`bits`] | digests of many commands, so that two machines can be compared bit for bit |
 //! | [`report`] | what a board prints of all this |
@@ -29,6 +30,7 @@ pub mod number;
 pub mod random;
 pub mod report;
 pub mod scene;
+pub mod skill;
 pub mod stream;
 pub mod timing;
 

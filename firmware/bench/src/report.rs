@@ -9,7 +9,7 @@ use pliant_core::scalar::Fixed;
 /// Most ticks of a case.
 pub const MAX_TICKS: usize = 20_000;
 
-/// Most upserts of a case: some take as long as hundreds of ticks.
+/// Most upserts of a case: some take as long as many ticks.
 const MAX_UPSERTS: u32 = 1_000;
 
 /// What to print, as it is asked for by words: `ticks=N` (of each case; 0 for none), `parts` (each part of a tick as well), `bits=N` (a digest
@@ -112,6 +112,7 @@ impl<C: Clock, W: Write> Bench<'_, C, W> {
         const K: usize = 4;
         self.cases::<Fixed, 2, 8>(0, K)?;
         self.cases::<Fixed, 2, 8>(8, K)?;
+        self.upserts::<Fixed, 2, 8>()?;
         self.bits::<Fixed>()
     }
 
@@ -136,6 +137,8 @@ impl<C: Clock, W: Write> Bench<'_, C, W> {
 
     fn case<S: Number, const D: usize, const CAP: usize>(&mut self, case: Case, part: Part) -> fmt::Result {
         let figures = timing::measure::<S, D, CAP>(case, part, &mut self.clock, self.counts);
+        // No number rather than a wrong one.
+        let Ok(figures) = figures else { return self.overflow(part.name(), case.kind.name()) };
         let Case { obstacles, components, points, kind, ticks } = case;
         write!(self.out, r#"{{"part":"{}","obstacles":{obstacles},"points":{points},"#, part.name())?;
         write!(self.out, r#""scene":"{}","dimension":{D},"k":{components},"#, kind.name())?;
@@ -161,13 +164,23 @@ impl<C: Clock, W: Write> Bench<'_, C, W> {
                 continue;
             }
             let figures = timing::measure_upserts::<S, D, CAP>(kind, upserts, &mut self.clock, self.counts);
-            let timing::Figures { median, p99, worst, worst_at, .. } = figures;
             let name = kind.map_or("groups", Kind::name);
+            let Ok(timing::UpsertFigures { whole, longest_piece: piece }) = figures else {
+                self.overflow("upsert", name)?;
+                continue;
+            };
+            let timing::Figures { median, p99, worst, worst_at, .. } = whole;
             write!(self.out, r#"{{"part":"upsert","room":{CAP},"scene":"{name}","dimension":{D},"#)?;
             write!(self.out, r#""scalar":"{}","core":"{}","upserts":{upserts},"#, S::NAME, self.core)?;
-            writeln!(self.out, r#""median":{median},"p99":{p99},"worst":{worst},"worst_at":{worst_at}}}"#)?;
+            write!(self.out, r#""median":{median},"p99":{p99},"worst":{worst},"worst_at":{worst_at},"#)?;
+            writeln!(self.out, r#""longest_piece":{piece}}}"#)?;
         }
         Ok(())
+    }
+
+    /// Something took longer than the clock can count.
+    fn overflow(&mut self, part: &str, scene: &str) -> fmt::Result {
+        writeln!(self.out, r#"{{"overflow":"{part}","scene":"{scene}","core":"{}"}}"#, self.core)
     }
 
     fn bits<S: Number>(&mut self) -> fmt::Result {

@@ -7,6 +7,7 @@ mod host;
 mod input;
 mod modes;
 mod obstacles;
+mod overlaps;
 mod peers;
 mod scan;
 mod skills;

@@ -7,20 +7,21 @@ use pliant_protocol::{FRAME_MAX, SCHEMA, ToDevice, ToHost, checksum, encode};
 
 use crate::host::{HERE, linear};
 
-struct Table {
+/// A device in its two halves.
+pub struct Table {
     desk: Desk<u8>,
-    control: Control,
+    pub control: Control,
 }
 
 impl Table {
-    fn say(&mut self, from: u8, sequence: u16, message: ToDevice) -> Option<ToHost> {
+    pub fn say(&mut self, from: u8, sequence: u16, message: ToDevice) -> Option<ToHost> {
         let mut room = [0; FRAME_MAX];
         let frame = encode(sequence, &message, &mut room).unwrap();
         self.desk.receive(from, frame, &mut self.control)
     }
 
     /// A host, 1, that drives.
-    fn driven() -> Self {
+    pub fn driven() -> Self {
         let desk = Desk::new(Identity { board: "test", firmware: [0, 1, 0] });
         let mut table = Self { desk, control: Control::new() };
         let mut room = [0; MODEL_MAX];

@@ -90,6 +90,8 @@ pub struct Upserts {
     pub p99: u32,
     /// The longest.
     pub worst: u32,
+    /// The longest of the pieces in which a device does it: no tick waits longer for it.
+    pub longest_piece: u32,
 }
 
 /// A digest of commands, from a board and from here.
@@ -127,6 +129,12 @@ enum Line {
         core: String,
         #[serde(flatten)]
         scene: Scene,
+    },
+    /// A part of a case took longer than the board can count: no figures.
+    Overflow {
+        overflow: String,
+        scene: String,
+        core: String,
     },
     Bits {
         bits: u32,
@@ -203,6 +211,9 @@ impl Report {
                 };
                 self.bits.push(Bits { ticks, scalar, core, board, host: format!("{host:016x}") });
             }
+            Ok(Line::Overflow { overflow, scene, core }) => {
+                each(&format!("{core}, {overflow}, {scene}: longer than the board can count, and left out"));
+            }
             // Not for us.
             Err(_) => {}
         }
@@ -227,7 +238,7 @@ mod tests {
         }
         let [ticks] = report.ticks.as_slice() else { panic!("{report:?}") };
         assert_eq!((ticks.instructions_per_tick, ticks.worst, ticks.scenes.len()), (5, 9, 3));
-        let line = r#"{"part":"upsert","room":64,"scene":"groups","dimension":2,"scalar":"f32","core":"M4","upserts":5,"median":1,"p99":2,"worst":3,"worst_at":4}"#;
+        let line = r#"{"part":"upsert","room":64,"scene":"groups","dimension":2,"scalar":"f32","core":"M4","upserts":5,"median":1,"p99":2,"worst":3,"worst_at":4,"longest_piece":2}"#;
         report.take(line, &mut |_| ());
         assert_eq!((report.upserts.len(), report.upserts[0].worst, report.ticks.len()), (1, 3, 1));
         report.take("something else", &mut |_| ());

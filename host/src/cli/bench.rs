@@ -101,7 +101,7 @@ fn print_report(report: &Report) {
     if !report.upserts.is_empty() {
         say!("\nInstructions to put an obstacle into a full table\n");
         say!(
-            "  {:10}  {:6}  {:>3}  {:>4}  {:10}  {:>8}  {:>8}  {:>8}",
+            "  {:10}  {:6}  {:>3}  {:>4}  {:10}  {:>8}  {:>8}  {:>8}  {:>8}",
             "core",
             "scalar",
             "dim",
@@ -109,11 +109,16 @@ fn print_report(report: &Report) {
             "scene",
             "median",
             "99 %",
-            "longest"
+            "longest",
+            "a piece"
         );
     }
-    for Upserts { core, scalar, dimension, room, scene, median, p99, worst, .. } in &report.upserts {
-        say!("  {core:10}  {scalar:6}  {dimension:>3}  {room:>4}  {scene:10}  {median:>8}  {p99:>8}  {worst:>8}");
+    for Upserts { core, scalar, dimension, room, scene, median, p99, worst, longest_piece: piece, .. } in
+        &report.upserts
+    {
+        say!(
+            "  {core:10}  {scalar:6}  {dimension:>3}  {room:>4}  {scene:10}  {median:>8}  {p99:>8}  {worst:>8}  {piece:>8}"
+        );
     }
     for b in &report.bits {
         let (same, ticks) = (if b.equal() { "the same bits as" } else { "OTHER BITS than" }, b.ticks);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use pliant_core::Scalar;
+use pliant_core::{Fixed, Scalar};
 use serde_json::json;
 
 use super::{Finished, print_json};
@@ -19,40 +19,61 @@ pub struct Args {
 /// What the certificate says in one precision.
 struct Found {
     precision: &'static str,
+    /// What the device finds, 1/s, its rounding included.
     rate: f64,
+    /// What is proved of the same numbers without rounding, 1/s.
+    margin: f64,
     slowest: usize,
 }
 
 pub(super) fn main(args: &Args, json: bool) -> Finished {
     let model = ModelFile::read(&args.model)?;
-    let found = [certificate::<f32>("f32", &model)?, certificate::<f64>("f64", &model)?];
+    let mut found = vec![certificate::<f32>("f32", &model)?, certificate::<f64>("f64", &model)?];
+    // A processor without floating point: not every skill has room in its numbers.
+    let fixed = certificate::<Fixed>("fixed", &model);
+    let without = fixed.as_ref().err().map(ToString::to_string);
+    found.extend(fixed);
     let components = model.component.len();
     if json {
         let each: Vec<_> = found
             .iter()
-            .map(|f| json!({ "precision": f.precision, "rate_per_s": f.rate, "slowest_component": f.slowest + 1 }))
+            .map(|f| {
+                json!({
+                    "precision": f.precision, "margin_per_s": f.margin, "rate_per_s": f.rate, "slowest_component": f.slowest + 1,
+                })
+            })
             .collect();
         print_json(&json!({
             "model": model.name, "dimension": model.dimension, "components": components, "certified": true, "certificate": each,
+            "not_in_fixed_point": without,
         }));
     } else {
         say!("{}: {} dimensions, {components} components", model.name, model.dimension);
         for f in found {
             say!(
-                "  {}: certified; the distance to the goal shrinks at {:.3} 1/s or faster everywhere (component {} is the slowest)",
+                "  {}: certified; the distance to the goal shrinks at {} or faster everywhere (component {} is the slowest)",
                 f.precision,
-                f.rate,
+                per_second(f.margin),
                 f.slowest + 1
             );
+        }
+        if let Some(reason) = without {
+            say!("  not in fixed point: {reason}");
         }
     }
     Ok(Outcome::Success)
 }
 
+/// Rounded down, so that what is printed is proved as well.
+pub(super) fn per_second(margin: f64) -> String {
+    format!("{:.3} 1/s", (margin * 1e3).floor() / 1e3)
+}
+
 fn certificate<S: Scalar>(precision: &'static str, model: &ModelFile) -> Result<Found, Error> {
-    let certificate = match model.skill::<S>()? {
-        Skill::Planar(ds) => ds.certificate(),
-        Skill::Spatial(ds) => ds.certificate(),
+    let rate = match model.skill::<S>()? {
+        Skill::Planar(ds) => ds.certificate().rate,
+        Skill::Spatial(ds) => ds.certificate().rate,
     };
-    Ok(Found { precision, rate: certificate.rate.to_f64(), slowest: certificate.slowest })
+    let proof = model.proof::<S>()?;
+    Ok(Found { precision, rate: rate.to_f64(), margin: proof.margin, slowest: proof.slowest })
 }

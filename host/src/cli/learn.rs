@@ -1,15 +1,16 @@
 //! `pliant learn`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde_json::json;
 
+use super::check::per_second;
 use super::{Finished, print_json, progress, warn};
-use crate::error::Outcome;
+use crate::error::{Error, Outcome};
 use crate::learn::{Demonstrations, Learnt, Options, Unit, learn_from, memory, read};
-use crate::model::{ModelFile, Skill};
-use pliant_core::Scalar;
+use crate::model::ModelFile;
+use crate::plot::{self, Portrait};
 
 /// Options of `pliant learn`.
 #[derive(Clone, Debug, clap::Args)]
@@ -24,6 +25,12 @@ pub struct Args {
     /// demonstration's name).
     #[arg(short, long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
+    /// Where to draw it beside its demonstrations, .svg or .png (MODEL.svg beside the model if not given).
+    #[arg(long, value_name = "FIG")]
+    figure: Option<PathBuf>,
+    /// Draw nothing.
+    #[arg(long, conflicts_with = "figure")]
+    no_figure: bool,
     /// Unit of lengths in the files: mm, cm or m (.mat: cm, so that LASA handwriting is ten times its size; .csv, .npz: m).
     #[arg(long)]
     unit: Option<Unit>,
@@ -92,11 +99,25 @@ fn verdict(learnt: &Learnt) -> Vec<String> {
     says
 }
 
+/// The skill beside its demonstrations.
+fn draw(learnt: &Learnt, figure: &Path) -> Result<(), Error> {
+    let (model, shown) = (&learnt.model, &learnt.demonstrations);
+    let note = format!("{} components, path error {:.1} mm", model.component.len(), learnt.quality.path_error * 1e3);
+    if let Some(portrait) = Portrait::new(&*model.name, note, model, shown, Unit::M) {
+        plot::portrait(&portrait, plot::Options::default().width).save(figure)?;
+    }
+    Ok(())
+}
+
 pub(super) fn main(args: &Args, json: bool) -> Finished {
     let stem =
         args.demos.first().and_then(|p| p.file_stem()).map_or("skill".into(), |s| s.to_string_lossy().to_lowercase());
     let out = args.out.clone().or(args.add_to.clone()).unwrap_or_else(|| PathBuf::from(format!("{stem}.toml")));
     let name = out.file_stem().map_or(stem, |s| s.to_string_lossy().into_owned());
+    let figure = (!args.no_figure).then(|| args.figure.clone().unwrap_or_else(|| out.with_extension("svg")));
+    if let Some(figure) = &figure {
+        plot::check_format(figure)?;
+    }
     let options = Options {
         name,
         unit: args.unit,
@@ -124,15 +145,15 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     let sources = if complete { &sources[..] } else { &[] };
     memory::note(&mut learnt.model, &out, sources, &learnt.demonstrations.starts());
     learnt.model.write(&out)?;
+    if let Some(figure) = &figure {
+        draw(&learnt, figure)?;
+    }
     let warnings: Vec<_> = learnt.demonstrations.warnings().iter().map(ToString::to_string).collect();
-    let margin = match learnt.model.skill::<f32>()? {
-        Skill::Planar(ds) => ds.certificate().rate.to_f64(),
-        Skill::Spatial(ds) => ds.certificate().rate.to_f64(),
-    };
+    let margin = learnt.model.proof::<f32>()?.margin;
     let (k, q, demonstrations) = (learnt.model.component.len(), &learnt.quality, learnt.demonstrations.items().len());
     if json {
         print_json(&json!({
-            "name": learnt.model.name, "model": out, "dimension": learnt.model.dimension, "k": k, "demonstrations": demonstrations,
+            "name": learnt.model.name, "model": out, "figure": figure, "dimension": learnt.model.dimension, "k": k, "demonstrations": demonstrations,
             "rmse_m_s": q.rmse, "e_dot": q.e_dot, "dtwd_m": q.dtwd, "path_error_m": q.path_error, "pace": q.pace, "margin": margin, "verdict": verdict(&learnt),
             "converged": q.converged, "rollouts": q.rollouts, "robust": q.robust, "beside": q.beside, "certified": true, "seconds": seconds, "warnings": warnings,
         }));
@@ -147,7 +168,11 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
             q.e_dot,
             q.path_error * 1e3
         );
-        say!("  certified rate {margin:.3} 1/s, rounding included; {:.2} times the demonstrators' time", q.pace);
+        say!(
+            "  proved rate {} on the rounded numbers; {:.2} times the demonstrators' time",
+            per_second(margin),
+            q.pace
+        );
         say!(
             "  {} of {} rollouts from the demonstrations' starts arrive; from beside the demonstrations {} of {} in twice their time",
             q.converged,
@@ -159,6 +184,9 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
             say!("  {sentence}");
         }
         say!("  model: {}", out.display());
+        if let Some(figure) = &figure {
+            say!("  figure: {}", figure.display());
+        }
     }
     Ok(Outcome::Success)
 }

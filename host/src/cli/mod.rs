@@ -59,7 +59,7 @@ enum Command {
     Eval(eval::Args),
     /// Draw a scene: streamlines, hard and soft regions, trajectories.
     Plot(plot::Args),
-    /// Run the paper's studies and experiments again: tables, figures, and whether its claims hold.
+    /// Run the paper's studies and experiments again, or learn a whole set of motions: tables and figures.
     Study(study::Args),
     /// Measure how long the method takes: here, or in instructions on emulated boards.
     Bench(bench::Args),

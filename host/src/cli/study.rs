@@ -1,5 +1,7 @@
 //! `pliant study`
 
+mod lasa;
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -10,7 +12,7 @@ use super::{Finished, print_json, progress};
 use crate::bridge::Device;
 use crate::error::Outcome;
 use crate::study::skill::Skills;
-use crate::study::{self, Findings, column, experiments, placements, trajectories};
+use crate::study::{Findings, column, experiments, placements, trajectories};
 
 /// Options of `pliant study`.
 #[derive(Clone, Debug, clap::Args)]
@@ -21,6 +23,14 @@ pub struct Args {
 
 #[derive(Clone, Debug, Subcommand)]
 enum Study {
+    #[command(flatten)]
+    OfPaper(OfPaper),
+    /// Learn every motion of a folder, such as the LASA handwriting set: how well, how fast, beside other learners.
+    Lasa(lasa::Args),
+}
+
+#[derive(Clone, Debug, Subcommand)]
+enum OfPaper {
     /// Everything the paper shows, and what it does not: all of the others.
     Paper {
         #[command(flatten)]
@@ -84,7 +94,7 @@ struct Places {
     placements: usize,
 }
 
-impl Study {
+impl OfPaper {
     fn common(&self) -> &Common {
         match self {
             Self::Paper { common, .. }
@@ -112,23 +122,30 @@ impl Stage<'_> {
 }
 
 pub(super) fn main(args: &Args, json: bool) -> Finished {
-    let common = args.study.common();
+    match &args.study {
+        Study::OfPaper(study) => of_paper(study, json),
+        Study::Lasa(args) => lasa::main(args, json),
+    }
+}
+
+fn of_paper(study: &OfPaper, json: bool) -> Finished {
+    let common = study.common();
     let bar = progress::bar(json);
     let stage = Stage { bar: &bar };
     let skills = stage.run("motions", |done| Skills::new(common.data.as_deref(), done))?;
     let seed = common.seed;
     let trajectories = || stage.run("trajectories", |done| trajectories::study(&skills, seed, done));
-    let time = || stage.run("times", |done| study::time(&skills, done));
+    let time = || stage.run("times", |done| crate::study::time(&skills, done));
     let experiments =
         |on: &OnDevice| stage.run("experiments", |done| experiments::study(&skills, on.device.as_ref(), seed, done));
     let placements =
         |places: &Places| stage.run("placements", |done| placements::study(&skills, places.placements, seed, done));
-    let found = match &args.study {
-        Study::Trajectories { .. } => trajectories()?,
-        Study::Time { .. } => time()?,
-        Study::Experiments { device, .. } => experiments(device)?,
-        Study::Placements { places, .. } => placements(places)?,
-        Study::Paper { device, places, .. } => {
+    let found = match study {
+        OfPaper::Trajectories { .. } => trajectories()?,
+        OfPaper::Time { .. } => time()?,
+        OfPaper::Experiments { device, .. } => experiments(device)?,
+        OfPaper::Placements { places, .. } => placements(places)?,
+        OfPaper::Paper { device, places, .. } => {
             let mut all = trajectories()?;
             all.append(time()?);
             all.append(experiments(device)?);

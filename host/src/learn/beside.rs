@@ -9,8 +9,6 @@ use nalgebra::SVector;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// What a sample of the tube counts, against one of a demonstration.
-pub const WEIGHT: f64 = 1.0;
 /// Radius of the tube, in extents.
 const TUBE: f64 = 0.12;
 /// Samples of the tube a demonstration: beside its start, and evenly along it.
@@ -115,6 +113,7 @@ mod tests {
             x: (0..=100).map(|i| Vector2::new(-(1.0 + (std::f64::consts::PI * part(i)).cos()) / 2.0, 0.0)).collect(),
             v: (0..=100).map(|i| Vector2::new((std::f64::consts::PI * part(i)).sin(), 0.0)).collect(),
             t: (0..=100).map(|i| part(i) * std::f64::consts::FRAC_PI_2).collect(),
+            shift: 0.0,
         }
     }
 

@@ -66,15 +66,17 @@ impl<const D: usize> Lesson<'_, D> {
         let going: Vec<_> = self.shown.iter().map(beside::going).collect();
         let moved: Vec<_> = going.iter().map(|t| follow(t, &self.p, rate)).collect();
         let mut targets = Samples { x: vec![], v: vec![] };
-        let mut label = vec![];
+        let (mut label, mut belief) = (vec![], vec![]);
         for (track, (reference, away)) in going.iter().zip(&moved) {
             let segments = segments(reference, components);
             for (i, (x, v)) in track.x.iter().zip(&track.v).enumerate() {
                 targets.x.push(*x);
+                belief.push(track.belief(x));
                 targets.v.push(admissible(x, v, &self.p, rate));
                 label.push(segments[i]);
                 if away[i] > MOVED {
                     targets.x.push(reference.x[i]);
+                    belief.push(track.belief(&reference.x[i]));
                     targets.v.push(reference.v[i]);
                     label.push(segments[i]);
                 }
@@ -93,17 +95,19 @@ impl<const D: usize> Lesson<'_, D> {
         let start = Gram::new(&targets, &mixture).solve_for(&self.p, self.sigma, 2).ok()?;
         let mut field = Field::new(&mixture, &start.p, &start.a, self.sigma)?;
 
-        let references: Vec<_> = moved.iter().map(|m| m.0.clone()).collect();
-        let mut weight = vec![1.0; targets.x.len()];
-        for (x, v) in beside::tube(&references, self.seed) {
-            weight.push(beside::WEIGHT);
-            targets.v.push(admissible(&x, &v, &self.p, rate));
-            targets.x.push(x);
+        // A single component is linear: it lingers nowhere, and the samples alone say what it is.
+        if components > 1 {
+            let references: Vec<_> = moved.iter().map(|m| m.0.clone()).collect();
+            for (x, v) in beside::tube(&references, self.seed) {
+                belief.push(1.0);
+                targets.v.push(admissible(&x, &v, &self.p, rate));
+                targets.x.push(x);
+            }
         }
         let followed: Vec<_> = moved.into_iter().map(|m| m.0.after_start()).collect();
         let shown: Vec<_> = self.shown.iter().map(Track::after_start).collect();
         let weights = Weights { path: 0.0, pace: self.pace, ..Weights::default() };
-        let mut task = Task { x: &targets.x, v: &targets.v, weight: &weight, tracks: &followed, weights };
+        let mut task = Task { x: &targets.x, v: &targets.v, belief: &belief, tracks: &followed, weights };
         field = improve(field, &task, ROUNDS[0]);
         task.weights.path = Weights::default().path;
         field = improve(field, &task, ROUNDS[1]);
@@ -126,8 +130,7 @@ impl<const D: usize> Lesson<'_, D> {
 }
 
 fn improve<const D: usize>(field: Field<D>, task: &Task<D>, rounds: usize) -> Field<D> {
-    // In space P has five shape parameters in place of two, and its first guess is farther off.
-    if D == 2 { refine::<D, 10>(field, task, rounds) } else { refine::<D, 19>(field, task, 4 * rounds) }
+    if D == 2 { refine::<D, 10>(field, task, rounds) } else { refine::<D, 19>(field, task, rounds) }
 }
 
 /// Errors in multiples of a good model's, and a rollout that does not arrive counts more than any error.

@@ -235,6 +235,7 @@ pub struct Demonstrations {
     items: Vec<Demonstration>,
     attractor: DVector<f64>,
     extent: f64,
+    shifts: Vec<f64>,
     warnings: Vec<Warning>,
 }
 
@@ -297,11 +298,13 @@ impl Demonstrations {
         if !USUAL_SPEEDS.contains(&speed) {
             warnings.push(Warning::Speed { speed });
         }
+        let mut shifts = Vec::with_capacity(items.len());
         for (item, end) in items.iter_mut().zip(&ends) {
             let shift = &attractor - end;
             item.x.iter_mut().for_each(|p| *p += &shift);
+            shifts.push(shift.norm());
         }
-        Ok(Self { items, attractor, extent, warnings })
+        Ok(Self { items, attractor, extent, shifts, warnings })
     }
 
     /// What a person should know about them.
@@ -312,6 +315,11 @@ impl Demonstrations {
     /// The recordings.
     pub fn items(&self) -> &[Demonstration] {
         &self.items
+    }
+
+    /// How far each was shifted to end there, m.
+    pub fn shifts(&self) -> &[f64] {
+        &self.shifts
     }
 
     /// Where they all end.

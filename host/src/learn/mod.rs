@@ -15,6 +15,7 @@ pub mod evaluate;
 mod field;
 pub mod fit;
 pub mod gmm;
+mod held_out;
 pub mod memory;
 pub mod quality;
 pub mod read;
@@ -25,6 +26,7 @@ mod warning;
 
 pub use demonstration::{Demonstration, Demonstrations, Unit};
 pub use error::LearnError;
+pub use held_out::held_out;
 pub use quality::Quality;
 pub use read::read;
 pub use warning::Warning;
@@ -167,7 +169,7 @@ fn learn_in<const D: usize>(
 ) -> Result<Learnt, LearnError> {
     let recordings = recordings::<D>(&demonstrations);
     let scale = Scale::of(&demonstrations, &recordings);
-    let tracks = tracks(&recordings, &scale);
+    let tracks = tracks(&recordings, demonstrations.shifts(), &scale);
     let most = most_components(&demonstrations);
     let attempts: Vec<_> = match options.components {
         Some(k) => vec![(k, Grouping::Mixture), (k, Grouping::Segments)],
@@ -203,6 +205,8 @@ fn learn_in<const D: usize>(
     let Some((_, mut model)) = best else { return Err(LearnError::Fit { reason: failure }) };
     let Some(motion) = motion_of::<D>(&model) else { return Err(LearnError::Fit { reason: failure }) };
     let quality = quality::measure(&motion, &recordings, demonstrations.extent());
+    // The proof of what will run, free of rounding itself.
+    model.proof::<f32>().and_then(|_| model.proof::<f64>()).map_err(|e| LearnError::Fit { reason: e.to_string() })?;
     model.learnt = Some(provenance(options, &demonstrations, &quality));
     model.validate()?;
     progress(1.0);
@@ -238,20 +242,26 @@ fn model_of<const D: usize>(
     floating.ok_or("the certificate does not survive rounding to f32".into())
 }
 
-fn recordings<const D: usize>(demonstrations: &Demonstrations) -> Vec<quality::Recording<D>> {
+/// The demonstrations in the form that motions of the dimension D are compared with.
+pub fn recordings<const D: usize>(demonstrations: &Demonstrations) -> Vec<quality::Recording<D>> {
     let one = |d: &Demonstration| quality::Recording { t: d.t.clone(), x: fixed(&d.x), v: fixed(&d.v) };
     demonstrations.items().iter().map(one).collect()
 }
 
-fn tracks<const D: usize>(recordings: &[quality::Recording<D>], scale: &Scale<D>) -> Vec<reference::Track<D>> {
+fn tracks<const D: usize>(
+    recordings: &[quality::Recording<D>],
+    shifts: &[f64],
+    scale: &Scale<D>,
+) -> Vec<reference::Track<D>> {
     recordings
         .iter()
-        .map(|r| {
+        .zip(shifts)
+        .map(|(r, shift)| {
             let stride = r.x.len().div_ceil(TRACK_SAMPLES).max(1);
             let x = r.x.iter().map(|x| (x - scale.attractor) / scale.length).step_by(stride).collect();
             let v = r.v.iter().map(|v| v / scale.speed).step_by(stride).collect();
             let t = r.t.iter().map(|t| (t - r.t[0]) * scale.speed / scale.length).step_by(stride).collect();
-            reference::Track { x, v, t }
+            reference::Track { x, v, t, shift: shift / scale.length }
         })
         .collect()
 }

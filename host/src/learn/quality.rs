@@ -68,6 +68,22 @@ impl<const D: usize> Recording<D> {
     pub fn duration(&self) -> f64 {
         self.t[self.t.len() - 1] - self.t[self.start()]
     }
+
+    /// Seconds between two points of a rollout.
+    fn step(&self) -> f64 {
+        self.duration() / 400.0
+    }
+}
+
+/// What a demonstration is compared with: the path from where it starts, until it arrives or ten times the demonstration's time have
+/// passed, which is long enough for what is slow; and whether it arrived.
+pub fn rollout<const D: usize>(
+    motion: &Motion<D>,
+    recording: &Recording<D>,
+    extent: f64,
+) -> (Vec<SVector<f64, D>>, bool) {
+    let start = &recording.x[recording.start()];
+    motion.rollout(start, recording.step(), 10.0 * recording.duration(), NEAR * extent)
 }
 
 /// Compares a motion with demonstrations.
@@ -87,10 +103,8 @@ pub fn measure<const D: usize>(motion: &Motion<D>, recordings: &[Recording<D>], 
             }
         }
         let path = &r.x[r.start()..];
-        let duration = r.duration();
-        // Long enough for what is slow, and not for what stands.
-        let dt = duration / 400.0;
-        let (rollout, arrived) = motion.rollout(&path[0], dt, 10.0 * duration, NEAR * extent);
+        let dt = r.step();
+        let (rollout, arrived) = rollout(motion, r, extent);
         converged += usize::from(arrived);
         let (sum, mean) = warping_distance(&resample(path), &resample(&rollout));
         dtwd += sum;

@@ -8,7 +8,7 @@
 use super::field::cholesky;
 use super::fit::{MAX_CONDITION, condition};
 use super::refine::Path;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
 /// A demonstration in normalised units, thinned.
 #[derive(Debug, Clone)]
@@ -19,15 +19,27 @@ pub struct Track<const D: usize> {
     pub v: Vec<SVector<f64, D>>,
     /// Time of each sample.
     pub t: Vec<f64>,
+    /// How far it was shifted to end at the attractor.
+    pub shift: f64,
 }
 
 impl<const D: usize> Track<D> {
+    /// How far the direction at x is to be believed, 0 to 1. Seen from the attractor, the shift has turned it by about shift/|x|, which is much where
+    /// x is close; the square of that is its variance.
+    pub fn belief(&self, x: &SVector<f64, D>) -> f64 {
+        let close = KNOWN * KNOWN * x.norm_squared();
+        if self.shift > 0.0 { close / (close + self.shift * self.shift) } else { 1.0 }
+    }
+
     /// The path from where rollouts begin.
     pub fn after_start(&self) -> Path<D> {
         let first = self.x.len() / 50;
         Path { x: self.x[first..].to_vec(), duration: self.t[self.t.len() - 1] - self.t[first] }
     }
 }
+
+/// A direction that is known to this angle, in radians, counts half.
+const KNOWN: f64 = 0.02;
 
 /// Relative importance: a path error of one extent, a velocity error of the mean speed, a direction error.
 const PATH: f64 = 10.0;
@@ -119,7 +131,8 @@ fn price<const D: usize>(tracks: &[Track<D>], p: &SMatrix<f64, D, D>, sigma: f64
     PATH * away * (1.0 + FAR * away) + (slower + DIRECTION * turned) / f64::max(count, 1.0)
 }
 
-/// P of least price: from the identity and from a grid of stretched ones, by a pattern search.
+/// P of least price: from the identity, from a grid of stretched ones and from those of the linear motion nearest to what was shown, by a
+/// pattern search.
 pub fn search<const D: usize>(tracks: &[Track<D>], sigma: f64) -> SMatrix<f64, D, D> {
     let mut scratch = Scratch::default();
     let mut best = (f64::INFINITY, SMatrix::<f64, D, D>::identity());
@@ -140,6 +153,9 @@ pub fn search<const D: usize>(tracks: &[Track<D>], sigma: f64) -> SMatrix<f64, D
         for stretch in [0.02, 0.05, 0.15, 0.4, 2.5, 7.0, 20.0, 50.0] {
             offer(&mut best, SMatrix::identity() + direction * direction.transpose() * (stretch - 1.0));
         }
+    }
+    for p in of_nearest_linear(tracks) {
+        offer(&mut best, p);
     }
     let mut step = 0.3;
     while step > 0.003 {
@@ -163,6 +179,35 @@ pub fn search<const D: usize>(tracks: &[Track<D>], sigma: f64) -> SMatrix<f64, D
         }
     }
     best.1
+}
+
+/// The P of A'P + PA = -I for the A that fits all velocities best in least squares, and for this A with faster and faster decay: where a motion is
+/// nearly linear, its own V falls along it, which a grid in space may miss. Some may not be definite.
+fn of_nearest_linear<const D: usize>(tracks: &[Track<D>]) -> Vec<SMatrix<f64, D, D>> {
+    let (mut xx, mut vx) = (SMatrix::<f64, D, D>::zeros(), SMatrix::<f64, D, D>::zeros());
+    for (x, v) in tracks.iter().flat_map(|t| t.x.iter().zip(&t.v)) {
+        xx += x * x.transpose();
+        vx += v * x.transpose();
+    }
+    let Some(inverse) = (xx + SMatrix::identity() * (1e-6 * xx.trace())).try_inverse() else { return vec![] };
+    let a = vx * inverse;
+    [0.0, 0.1, 0.3, 1.0].iter().filter_map(|decay| lyapunov(&(a - SMatrix::identity() * (decay * a.norm())))).collect()
+}
+
+/// P of A'P + PA = -I, D^2 equations in as many entries.
+fn lyapunov<const D: usize>(a: &SMatrix<f64, D, D>) -> Option<SMatrix<f64, D, D>> {
+    let mut equations = DMatrix::<f64>::zeros(D * D, D * D);
+    for r in 0..D {
+        for c in 0..D {
+            for s in 0..D {
+                equations[(r * D + c, s * D + c)] += a[(s, r)];
+                equations[(r * D + c, r * D + s)] += a[(s, c)];
+            }
+        }
+    }
+    let right = DVector::from_fn(D * D, |i, _| if i / D == i % D { -1.0 } else { 0.0 });
+    let p = equations.lu().solve(&right)?;
+    Some(SMatrix::from_fn(|r, c| p[r * D + c]))
 }
 
 /// Unit vectors over half the circle, or the axes, edges and corners of a cube.

@@ -51,8 +51,8 @@ pub struct Task<'a, const D: usize> {
     pub x: &'a [SVector<f64, D>],
     /// Velocities.
     pub v: &'a [SVector<f64, D>],
-    /// How much each counts.
-    pub weight: &'a [f64],
+    /// How far each sample's direction is to be believed, 0 to 1.
+    pub belief: &'a [f64],
     /// Demonstrations to roll out along.
     pub tracks: &'a [Path<D>],
     /// Of the errors.
@@ -83,16 +83,22 @@ fn dimension<const D: usize, const B: usize>(field: &Field<D>) -> usize {
 }
 
 impl<const D: usize> Task<'_, D> {
-    /// Cost of f where v was shown, its gradient's half, and its metric: |f - v|^2 + direction |f/|f| - v/|v||^2, lengths bounded below.
+    /// Cost of f where v was shown, its gradient's half, and its metric: |f - v|^2 + direction belief |f/|f| - v/|v||^2, lengths bounded
+    /// below.
     #[inline]
-    fn compare(&self, f: &SVector<f64, D>, v: &SVector<f64, D>) -> (f64, SVector<f64, D>, SMatrix<f64, D, D>) {
+    fn compare(
+        &self,
+        f: &SVector<f64, D>,
+        v: &SVector<f64, D>,
+        belief: f64,
+    ) -> (f64, SVector<f64, D>, SMatrix<f64, D, D>) {
         let slow = self.weights.slow * self.weights.slow;
         let size = 1.0 / (f.norm_squared() + slow).sqrt();
         let heading = f * size;
         let e = f - v;
         let turn = heading - v / (v.norm_squared() + slow).sqrt();
         let slope = (SMatrix::<f64, D, D>::identity() - heading * heading.transpose()) * size;
-        let direction = self.weights.direction;
+        let direction = self.weights.direction * belief;
         (
             e.norm_squared() + direction * turn.norm_squared(),
             e + slope * turn * direction,
@@ -103,11 +109,10 @@ impl<const D: usize> Task<'_, D> {
     fn velocities<const B: usize>(&self, field: &Field<D>, normal: &mut Normal) {
         let (n, parts) = (normal.n, field.parts.len());
         let base = parts * B;
-        let share = 1.0 / self.weight.iter().sum::<f64>().max(1e-9);
-        for ((x, v), weight) in self.x.iter().zip(self.v).zip(self.weight) {
-            let w = share * weight;
+        let w = 1.0 / self.x.len().max(1) as f64;
+        for ((x, v), &belief) in self.x.iter().zip(self.v).zip(self.belief) {
             let local = field.at(x);
-            let (cost, e, metric) = self.compare(&local.f, v);
+            let (cost, e, metric) = self.compare(&local.f, v, belief);
             normal.cost += w * cost;
             let mut active = [0usize; super::gmm::MAX_COMPONENTS];
             let mut blocks = [[[0.0; B]; D]; super::gmm::MAX_COMPONENTS];
@@ -255,12 +260,11 @@ impl<const D: usize> Task<'_, D> {
     }
 
     fn cost<const B: usize>(&self, field: &Field<D>) -> f64 {
-        let (mut cost, mut total) = (0.0, 0.0);
-        for ((x, v), weight) in self.x.iter().zip(self.v).zip(self.weight) {
-            cost += weight * self.compare(&field.velocity(x), v).0;
-            total += weight;
+        let mut cost = 0.0;
+        for ((x, v), &belief) in self.x.iter().zip(self.v).zip(self.belief) {
+            cost += self.compare(&field.velocity(x), v, belief).0;
         }
-        cost / f64::max(total, 1e-9) + self.rollouts::<B>(field, None)
+        cost / self.x.len().max(1) as f64 + self.rollouts::<B>(field, None)
     }
 }
 
@@ -392,7 +396,7 @@ pub fn refine<const D: usize, const B: usize>(start: Field<D>, task: &Task<D>, r
                         let gain = (cost - c) / cost;
                         field = next;
                         damping = (damping * 0.3).max(1e-7);
-                        accepted = gain > if D == 2 { 1e-4 } else { 1e-6 };
+                        accepted = gain > 1e-4;
                         break;
                     }
                 }

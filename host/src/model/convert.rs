@@ -2,6 +2,7 @@
 
 use super::{ModelFile, ModelFileError};
 use crate::learn::gmm::whitening;
+use crate::proof::{Proof, prove};
 use nalgebra::{SMatrix, SVector};
 use pliant_core::Scalar;
 use pliant_core::ds::{CertificateError, Certified, Component, LpvDs, ModelError, ModelField};
@@ -45,15 +46,31 @@ impl ModelFile {
 
     /// The model in the precision S with its certificate checked in that precision.
     pub fn certify<S: Scalar, const D: usize>(&self) -> Result<Certified<LpvDs<S, D>>, ModelFileError> {
-        self.lpv_ds::<S, D>()?.certify().map_err(|e| ModelFileError::Certificate {
-            name: self.name.clone(),
-            problem: match e {
-                CertificateError::Lyapunov => "lyapunov is not positive definite".into(),
-                CertificateError::Component(k) => {
-                    format!("component {}: a' P + P a is not negative definite", k + 1)
-                }
-            },
+        let model = self.lpv_ds::<S, D>()?;
+        model.clone().certify().map_err(|e| {
+            // Does it not hold, or is it only closer to the edge than rounding lets the device see?
+            let doubt = if prove(&model).is_ok() { ", as far as its rounding lets a device see" } else { "" };
+            self.refused(e, doubt)
         })
+    }
+
+    /// The certificate of the numbers in the precision S, proved without rounding.
+    pub fn proof<S: Scalar>(&self) -> Result<Proof, ModelFileError> {
+        let proof = match self.dimension {
+            3 => prove(&self.lpv_ds::<S, 3>()?),
+            _ => prove(&self.lpv_ds::<S, 2>()?),
+        };
+        proof.map_err(|e| self.refused(e, ""))
+    }
+
+    fn refused(&self, e: CertificateError, doubt: &str) -> ModelFileError {
+        let problem = match e {
+            CertificateError::Lyapunov => format!("lyapunov is not positive definite{doubt}"),
+            CertificateError::Component(k) => {
+                format!("component {}: a' P + P a is not negative definite{doubt}", k + 1)
+            }
+        };
+        ModelFileError::Certificate { name: self.name.clone(), problem }
     }
 
     /// The certified skill in its own dimension.

@@ -4,6 +4,27 @@ use nalgebra::{Point2, Vector2};
 
 use super::figure::{Axes, Svg};
 use super::outline::Region;
+use super::streamlines;
+use super::style::{FLOW, FLOW_HEAD};
+
+/// Pixels between streamlines, about.
+pub(super) const SPACING: f64 = 17.0;
+
+/// Streamlines with arrowheads, so many pixels apart.
+pub(super) fn draw_flow(svg: &mut Svg, axes: &Axes, field: &dyn Fn(Point2<f64>) -> Option<Vector2<f64>>, spacing: f64) {
+    for line in streamlines(field, &axes.extent, spacing / axes.scale()) {
+        let pixels: Vec<_> = line.iter().map(|p| axes.pixel(p)).collect();
+        svg.path(thinned(&pixels, 0.04), false, FLOW);
+        let length = pixels.windows(2).map(|w| (w[1] - w[0]).norm()).sum::<f64>();
+        let heads = (length / 150.0).round().max(1.0);
+        for i in 0..heads as usize {
+            let at = ((i as f64 + 0.5) / heads * (pixels.len() - 1) as f64) as usize;
+            if let Some([from, tip]) = pixels.get(at.saturating_sub(1)..=at).and_then(|w| <[_; 2]>::try_from(w).ok()) {
+                svg.arrowhead(tip, &(tip - from), 7.5, FLOW_HEAD);
+            }
+        }
+    }
+}
 
 /// A dashed line with an arrowhead.
 pub(super) fn draw_track(svg: &mut Svg, axes: &Axes, track: &[Point2<f64>], style: &str, head: &str) {

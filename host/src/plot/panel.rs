@@ -5,23 +5,21 @@ use pliant_core::{Controller, Region, RobotState, Vector};
 
 use super::approach::{Clearance, Moment, clearance, nearest_approach};
 use super::figure::{Axes, Extent, Svg};
-use super::ink::{draw_track, ring, rings, thinned};
+use super::ink::{SPACING, draw_flow, draw_track, ring, rings, thinned};
 use super::labels::Labels;
 use super::outline::{Polygon, common};
 use super::paths::{self, Stroke};
 use super::seen::{Seen, track};
 use super::style::{
     ARRIVED, ATTRACTOR, ATTRACTOR_HEAD, ATTRACTOR_TRACK, BEFORE, BEFORE_INSIDE, CLEARANCE, CLEARANCE_CASING,
-    CLEARANCE_END, CORE, DOT, FLOW, FLOW_HEAD, MARGIN, OVERLAP, OVERLAP_LINE, REFERENCE, SCAN, SCAN_POINT, SHELL,
-    START, TRACK, TRACK_HEAD,
+    CLEARANCE_END, CORE, DOT, MARGIN, OVERLAP, OVERLAP_LINE, REFERENCE, SCAN, SCAN_POINT, SHELL, START, TRACK,
+    TRACK_HEAD,
 };
 use super::trajectory::TrajectoryPoint;
 use super::view::View;
-use super::{Options, PlotError, Trajectory, streamlines};
+use super::{Options, PlotError, Trajectory};
 use crate::scene::{ConvertError, MAX_OBSTACLES, Scene};
 
-/// Pixels between streamlines, about.
-const SPACING: f64 = 17.0;
 /// How much wider than high a panel may be, and the inverse.
 const WIDEST: f64 = 2.4;
 const HIGHEST: f64 = 1.15;
@@ -249,20 +247,7 @@ impl<'a> Panel<'a> {
             return;
         };
         let seen = |p: Point2<f64>| Some(self.view.project_direction(&field(self.view.lift(&p))?));
-        for line in streamlines(&seen, &axes.extent, SPACING / axes.scale()) {
-            let pixels: Vec<_> = line.iter().map(|p| axes.pixel(p)).collect();
-            svg.path(thinned(&pixels, 0.04), false, FLOW);
-            let length = pixels.windows(2).map(|w| (w[1] - w[0]).norm()).sum::<f64>();
-            let heads = (length / 150.0).round().max(1.0);
-            for i in 0..heads as usize {
-                let at = ((i as f64 + 0.5) / heads * (pixels.len() - 1) as f64) as usize;
-                if let Some([from, tip]) =
-                    pixels.get(at.saturating_sub(1)..=at).and_then(|w| <[_; 2]>::try_from(w).ok())
-                {
-                    svg.arrowhead(tip, &(tip - from), 7.5, FLOW_HEAD);
-                }
-            }
-        }
+        draw_flow(svg, axes, &seen, SPACING);
     }
 
     fn draw_soft(&self, svg: &mut Svg, axes: &Axes, name: &str) {

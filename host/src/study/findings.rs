@@ -72,12 +72,14 @@ impl Findings {
         table
     }
 
-    /// All numbers, and the verdicts.
+    /// All numbers, and the verdicts if there are any.
     pub fn to_json(&self) -> Value {
         let verdict =
             |v: &Verdict| json!({"claim": v.claim, "paper": v.paper, "measured": v.measured, "holds": v.holds});
         let mut all = self.json.clone();
-        all.insert("verdicts".into(), self.verdicts.iter().map(verdict).collect());
+        if !self.verdicts.is_empty() {
+            all.insert("verdicts".into(), self.verdicts.iter().map(verdict).collect());
+        }
         Value::Object(all)
     }
 
@@ -87,7 +89,8 @@ impl Findings {
     /// A file cannot be written.
     pub fn write(&self, folder: &Path, introduction: &str) -> Result<(), Error> {
         let mut report = format!("{introduction}\n");
-        for table in std::iter::once(&self.verdict_table()).chain(&self.tables) {
+        let verdicts = (!self.verdicts.is_empty()).then(|| self.verdict_table());
+        for table in verdicts.iter().chain(&self.tables) {
             put(&folder.join(table.name).with_extension("csv"), &table.csv())?;
             let _ = writeln!(report, "{}", table.markdown());
         }

@@ -2,7 +2,7 @@
 //!
 //! Everything is computed three ways ([`column`]): the paper to the letter, Pliant's default, and the method the paper builds on. A part of the
 //! paper is a module: [`trajectories`] (Fig. 3), [`stiffness_time`] and [`reduction`] (Fig. 4), [`experiments`] (section V), and what the paper
-//! does not show, [`placements`]. Each ends with [`Findings`]. The same seed gives the same findings on any number of cores.
+//! does not show, [`placements`]. Beside them [`lasa`] learns a whole set of motions. Each ends with [`Findings`]. The same seed gives the same findings on any number of cores.
 //!
 //! ```
 //! use pliant::study::skill::Skills;
@@ -14,9 +14,11 @@
 //! ```
 
 pub mod column;
+pub mod cpu;
 pub mod drive;
 pub mod experiments;
 pub mod findings;
+pub mod lasa;
 pub mod measure;
 pub mod parallel;
 pub mod placements;

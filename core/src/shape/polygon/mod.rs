@@ -126,6 +126,12 @@ impl<S: Scalar> Scaled<'_, S> {
         (share * share, vector(steepest))
     }
 
+    /// The largest w.u of all u inside.
+    pub fn support<const D: usize>(&self, w: &Vector<S, D>) -> S {
+        let w = plane(w);
+        self.vertices.iter().fold(S::zero(), |most, v| most.max(dot(*v, w))) * self.scale
+    }
+
     /// The distance of the nearest edge's line from the origin.
     pub fn inner(&self) -> S {
         self.edges().fold(S::MAX, |least, e| least.min(S::one() / S::norm(&e.normal)))

@@ -7,12 +7,12 @@
 //! | `report` | DUALTIMER, pended by `control` | 2 | sends the tick's command |
 //! | `ethernet` | ETHERNET | 2 | the UDP link |
 //! | `drain` | UART1 | 1 | lets messages out |
-//! | `idle` | | 0 | feeds the watchdog, measures the stack, sleeps |
+//! | `idle` | | 0 | finds which obstacles overlap, feeds the watchdog, measures the stack, sleeps |
 //!
 //! The links share everything but the control half without locks, for none of them interrupts another. Among them, the
 //! one with the lower interrupt number goes first, so a command never waits for more than one call of `ethernet`. The
-//! control half is locked against the tick only for the short steps in which the application applies a request; in a
-//! stepped run a robot's state makes the tick there, and the timer's tick has nothing to do.
+//! control half is locked against the tick only for the short steps in which the application applies a request, and for
+//! one piece at a time of the search for overlapping obstacles, the longest of them; in a stepped run a robot's state makes the tick there, and the timer's tick has nothing to do.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -80,10 +80,14 @@ mod app {
         )
     }
 
-    #[idle(local = [watchdog, survey: Survey = Survey::new()])]
-    fn idle(cx: idle::Context) -> ! {
+    #[idle(local = [watchdog, survey: Survey = Survey::new()], shared = [control])]
+    fn idle(mut cx: idle::Context) -> ! {
         loop {
             cx.local.watchdog.feed();
+            // A change that comes after the last look waits for the next interrupt, a tick at most.
+            if cx.shared.control.lock(Control::settle) {
+                continue;
+            }
             cx.local.survey.step();
             cortex_m::asm::wfi();
         }

@@ -12,35 +12,47 @@ const RELOAD: u32 = 0x00ff_ffff;
 
 /// The count of instructions.
 pub struct Instructions {
-    /// Clocks between two readings with nothing between them.
+    timer: SYST,
+    /// Clocks between start and stop with nothing between them.
     reading: u32,
 }
 
 /// Starts the count; what is due to reading it is found here, and left out from then on.
-pub fn start() -> Instructions {
-    if let Some(mut core) = Peripherals::take() {
-        core.SYST.set_clock_source(SystClkSource::Core);
-        core.SYST.set_reload(RELOAD);
-        core.SYST.clear_current();
-        core.SYST.enable_counter();
-    }
-    let reading = (0..100).map(|_| clocks(SYST::get_current(), SYST::get_current())).min();
-    Instructions { reading: reading.unwrap_or_default() }
+pub fn start() -> Option<Instructions> {
+    let mut timer = Peripherals::take()?.SYST;
+    timer.set_clock_source(SystClkSource::Core);
+    timer.set_reload(RELOAD);
+    timer.enable_counter();
+    let mut clock = Instructions { timer, reading: 0 };
+    let reading = (0..100).filter_map(|_| {
+        clock.start();
+        clock.clocks()
+    });
+    let reading = reading.min().unwrap_or_default();
+    Some(Instructions { reading, ..clock })
 }
 
-/// It counts down.
-fn clocks(start: u32, end: u32) -> u32 {
-    start.wrapping_sub(end) & RELOAD
+impl Instructions {
+    /// Clocks since the start. It counts down, and says whether it has come to zero since it was started.
+    #[inline(always)]
+    fn clocks(&mut self) -> Option<u32> {
+        let now = SYST::get_current();
+        // The first clock after the start loads it.
+        (!self.timer.has_wrapped()).then_some(RELOAD.wrapping_sub(now) & RELOAD)
+    }
 }
 
 impl Clock for Instructions {
     #[inline(always)]
-    fn now(&mut self) -> u32 {
-        SYST::get_current()
+    fn start(&mut self) {
+        // Also forgets that it has come to zero.
+        self.timer.clear_current();
     }
 
-    fn between(&self, start: u32, end: u32) -> u32 {
-        (clocks(start, end).saturating_sub(self.reading) * 5 + 4) / 8
+    #[inline(always)]
+    fn stop(&mut self) -> Option<u32> {
+        let clocks = self.clocks()?;
+        Some((clocks.saturating_sub(self.reading) * 5 + 4) / 8)
     }
 }
 

@@ -28,8 +28,9 @@ mod board {
     #[entry]
     fn main() -> ! {
         static mut COUNTS: [u32; MAX_TICKS] = [0; MAX_TICKS];
-        let (clock, wanted) = (counter::start(), counter::wanted());
-        let done = hio::hstdout().map_err(|()| core::fmt::Error).and_then(|out| {
+        let wanted = counter::wanted();
+        let parts = counter::start().ok_or(()).and_then(|clock| Ok((clock, hio::hstdout()?)));
+        let done = parts.map_err(|()| core::fmt::Error).and_then(|(clock, out)| {
             #[cfg(target_abi = "eabihf")]
             let done = Bench { core: "Cortex-M4F", clock, counts: COUNTS, out, wanted }.with_fpu();
             #[cfg(not(target_abi = "eabihf"))]

@@ -41,7 +41,7 @@ pub fn recordings(paths: &[PathBuf], unit: Option<Unit>) -> Result<Vec<Demonstra
             let mut inside = Vec::new();
             for entry in fs::read_dir(path).map_err(unreadable)? {
                 let entry = entry.map_err(unreadable)?.path();
-                if format_of(&entry).is_some() {
+                if is_readable(&entry) {
                     inside.push(entry);
                 }
             }
@@ -60,6 +60,11 @@ pub fn recordings(paths: &[PathBuf], unit: Option<Unit>) -> Result<Vec<Demonstra
 }
 
 type Reader = fn(&str, &[u8]) -> Result<Vec<Demonstration>, LearnError>;
+
+/// Is this, by its name, a file of demonstrations?
+pub fn is_readable(path: &Path) -> bool {
+    format_of(path).is_some()
+}
 
 /// How a file is read and the unit it has where none is declared, by its name.
 fn format_of(path: &Path) -> Option<(Reader, Unit)> {

@@ -153,11 +153,9 @@ fn side(body: &Body, edges: &[Edge], piece: &[usize], x: &DVector<f64>, asked: &
             beyond.push((out, length(&own)));
         }
     }
-    let (choice, by): (_, Box<dyn Fn(&(DVector<f64>, f64)) -> f64>) = if beyond.is_empty() {
-        (lines, Box::new(|line| line.1))
-    } else {
-        (beyond, Box::new(|line| line.1 + line.0.dot(asked)))
-    };
+    let outside = !beyond.is_empty();
+    let choice = if outside { beyond } else { lines };
+    let by = |line: &(DVector<f64>, f64)| if outside { line.1 + line.0.dot(asked) } else { line.1 };
     let best = choice.iter().max_by(|a, b| by(a).total_cmp(&by(b)))?;
     // The same line twice is no tie.
     let tied = |line: &&(DVector<f64>, f64)| by(line) > by(best) - TIE && length(&(&line.0 - &best.0)) > TIE;
