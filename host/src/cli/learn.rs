@@ -69,6 +69,14 @@ fn verdict(learnt: &Learnt) -> Vec<String> {
         let stranded = q.rollouts - q.converged;
         says.push(format!("{stranded} rollouts take longer than ten times their demonstration: raise --sigma"));
     }
+    if q.robust < q.beside {
+        says.push(format!(
+            "from {} of {} places beside the demonstrations it takes more than twice their time: demonstrate from there as well, \
+             or raise --sigma",
+            q.beside - q.robust,
+            q.beside
+        ));
+    }
     if learnt.gives_way > CLOSE * extent {
         says.push(format!(
             "the demonstrations move away from their goal on the way, by {} more than a certificate allows: demonstrate a more direct way, \
@@ -147,7 +155,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         print_json(&json!({
             "name": learnt.model.name, "model": out, "figure": figure, "dimension": learnt.model.dimension, "k": k, "demonstrations": demonstrations,
             "rmse_m_s": q.rmse, "e_dot": q.e_dot, "dtwd_m": q.dtwd, "path_error_m": q.path_error, "pace": q.pace, "margin": margin, "verdict": verdict(&learnt),
-            "converged": q.converged, "rollouts": q.rollouts, "certified": true, "seconds": seconds, "warnings": warnings,
+            "converged": q.converged, "rollouts": q.rollouts, "robust": q.robust, "beside": q.beside, "certified": true, "seconds": seconds, "warnings": warnings,
         }));
     } else {
         say!(
@@ -165,7 +173,13 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
             per_second(margin),
             q.pace
         );
-        say!("  {} of {} rollouts from the demonstrations' starts arrive", q.converged, q.rollouts);
+        say!(
+            "  {} of {} rollouts from the demonstrations' starts arrive; from beside the demonstrations {} of {} in twice their time",
+            q.converged,
+            q.rollouts,
+            q.robust,
+            q.beside
+        );
         for sentence in verdict(&learnt) {
             say!("  {sentence}");
         }

@@ -1,5 +1,6 @@
 //! One attempt at a model: grouped, fitted by a convex programme, refined.
 
+use super::beside;
 use super::evaluate::Motion;
 use super::field::Field;
 use super::fit::Gram;
@@ -19,6 +20,8 @@ const ROUNDS: [usize; 3] = [20, 15, 10];
 const SAME_PATH: f64 = 0.02;
 const SAME_SPEED: f64 = 0.14;
 const SAME_DIRECTION: f64 = 0.034;
+/// What a rollout from beside the demonstrations costs that does not arrive in time.
+const LATE: f64 = 0.3;
 
 /// How samples are grouped to start from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,10 +62,12 @@ impl<const D: usize> Lesson<'_, D> {
     /// Learns with this many components; `None` where no start works.
     pub fn attempt(&self, components: usize, grouping: Grouping) -> Option<Candidate<D>> {
         let rate = self.sigma * INSIDE;
-        let moved: Vec<_> = self.shown.iter().map(|t| follow(t, &self.p, rate)).collect();
+        // No skill waits: where a demonstrator does, most of all at the start, it goes on.
+        let going: Vec<_> = self.shown.iter().map(beside::going).collect();
+        let moved: Vec<_> = going.iter().map(|t| follow(t, &self.p, rate)).collect();
         let mut targets = Samples { x: vec![], v: vec![] };
         let (mut label, mut belief) = (vec![], vec![]);
-        for (track, (reference, away)) in self.shown.iter().zip(&moved) {
+        for (track, (reference, away)) in going.iter().zip(&moved) {
             let segments = segments(reference, components);
             for (i, (x, v)) in track.x.iter().zip(&track.v).enumerate() {
                 targets.x.push(*x);
@@ -90,6 +95,15 @@ impl<const D: usize> Lesson<'_, D> {
         let start = Gram::new(&targets, &mixture).solve_for(&self.p, self.sigma, 2).ok()?;
         let mut field = Field::new(&mixture, &start.p, &start.a, self.sigma)?;
 
+        // A single component is linear: it lingers nowhere, and the samples alone say what it is.
+        if components > 1 {
+            let references: Vec<_> = moved.iter().map(|m| m.0.clone()).collect();
+            for (x, v) in beside::tube(&references, self.seed) {
+                belief.push(1.0);
+                targets.v.push(admissible(&x, &v, &self.p, rate));
+                targets.x.push(x);
+            }
+        }
         let followed: Vec<_> = moved.into_iter().map(|m| m.0.after_start()).collect();
         let shown: Vec<_> = self.shown.iter().map(Track::after_start).collect();
         let weights = Weights { path: 0.0, pace: self.pace, ..Weights::default() };
@@ -122,7 +136,8 @@ fn improve<const D: usize>(field: Field<D>, task: &Task<D>, rounds: usize) -> Fi
 /// Errors in multiples of a good model's, and a rollout that does not arrive counts more than any error.
 fn score(q: &Quality) -> f64 {
     let stranded = (q.rollouts - q.converged) as f64;
-    q.path_error / SAME_PATH + q.rmse / SAME_SPEED + q.e_dot / SAME_DIRECTION + 100.0 * stranded
+    let late = (q.beside - q.robust) as f64;
+    q.path_error / SAME_PATH + q.rmse / SAME_SPEED + q.e_dot / SAME_DIRECTION + 100.0 * stranded + LATE * late
 }
 
 /// The number of the piece each sample is in, of `count` pieces alike in length, turning and time.

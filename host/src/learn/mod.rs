@@ -5,6 +5,7 @@
 //! best for its size is kept ([`learn`]). The result is a [`ModelFile`], rounded to f32 so that every machine runs the
 //! same numbers, with its certificate checked on them.
 
+mod beside;
 mod candidate;
 mod cleaning;
 mod cone;
@@ -340,6 +341,7 @@ fn provenance(options: &Options, demonstrations: &Demonstrations, quality: &Qual
         ("pace", float(quality.pace)),
         ("path_error", float(quality.path_error)),
         ("converged", integer(quality.converged)),
+        ("robust", integer(quality.robust)),
     ]
     .into_iter()
     .map(|(key, value)| (key.to_owned(), value))

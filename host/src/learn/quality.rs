@@ -1,5 +1,6 @@
 //! How well a motion follows the demonstrations.
 
+use super::beside;
 use super::evaluate::Motion;
 use nalgebra::SVector;
 
@@ -9,6 +10,9 @@ const POINTS: usize = 200;
 const WINDOW: usize = 20;
 /// A rollout has arrived within this part of the extent.
 const NEAR: f64 = 0.01;
+/// From beside the demonstrations this is near enough, in this many times their duration: the last of the way may be slow.
+const THERE: f64 = 0.05;
+const PATIENCE: f64 = 2.0;
 /// Rollouts start at this sample of a recording of a thousand: before it the hand hardly moves.
 const START: usize = 20;
 /// Samples a demonstration is judged at: every fifth of a thousand.
@@ -32,6 +36,10 @@ pub struct Quality {
     pub converged: usize,
     /// All rollouts: one a demonstration.
     pub rollouts: usize,
+    /// Rollouts from beside the demonstrations that are within a twentieth of the extent of the attractor after twice the demonstrators' time.
+    pub robust: usize,
+    /// All such rollouts: from the mean start, and from places up to a tenth of the extent beside the starts and the paths.
+    pub beside: usize,
 }
 
 /// One demonstration.
@@ -109,6 +117,10 @@ pub fn measure<const D: usize>(motion: &Motion<D>, recordings: &[Recording<D>], 
         pace += if demonstrated > 0.0 { taken as f64 * dt / demonstrated } else { 1.0 };
     }
     let n = recordings.len().max(1) as f64;
+    let paths: Vec<_> = recordings.iter().map(|r| r.x.as_slice()).collect();
+    let longest = recordings.iter().map(Recording::duration).fold(0.0, f64::max);
+    let places = beside::places(&paths, extent);
+    let robust = places.iter().filter(|x| in_time(motion, x, longest, extent)).count();
     Quality {
         rmse: error / count.max(1) as f64,
         e_dot: turn / moving.max(1) as f64,
@@ -117,7 +129,15 @@ pub fn measure<const D: usize>(motion: &Motion<D>, recordings: &[Recording<D>], 
         pace: pace / n,
         converged,
         rollouts: recordings.len(),
+        robust,
+        beside: places.len(),
     }
+}
+
+/// Whether the motion from here is at the goal after `PATIENCE` times a demonstration's time.
+fn in_time<const D: usize>(motion: &Motion<D>, start: &SVector<f64, D>, duration: f64, extent: f64) -> bool {
+    let (path, arrived) = motion.rollout(start, duration / 100.0, PATIENCE * duration, NEAR * extent);
+    arrived || path.last().is_some_and(|x| (x - motion.attractor).norm() <= THERE * extent)
 }
 
 /// Points at equal steps along a path.

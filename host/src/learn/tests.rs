@@ -198,6 +198,33 @@ fn rounding_is_to_f32_and_keeps_it() {
     assert!(rounded(-0.0).is_sign_positive());
 }
 
+/// A grid about every shipped demonstration's start, up to a tenth of the extent away, and the mean start: from everywhere the motion is at its
+/// goal in twice the demonstrators' time. A field fitted to the samples alone all but stands still in some of these places.
+#[test]
+fn from_beside_the_starts_no_motion_lingers() {
+    for skill in ["arch", "hook", "sbend"] {
+        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../demos").join(skill);
+        let found = learn(&[folder], &Options::default(), &|_| ()).expect("learnable");
+        let motion = motion_of::<2>(&found.model).expect("planar");
+        let (items, extent) = (found.demonstrations.items(), found.demonstrations.extent());
+        let longest = items.iter().map(Demonstration::duration).fold(0.0, f64::max);
+        let first: Vec<_> = items.iter().map(|d| Vector2::new(d.x[0][0], d.x[0][1])).collect();
+        let mut starts = vec![first.iter().sum::<Vector2<f64>>() / first.len() as f64];
+        for x in &first {
+            for (radius, direction) in [0.05, 0.1].into_iter().flat_map(|r| (0..8).map(move |i| (r, f64::from(i)))) {
+                let (s, c) = (direction * std::f64::consts::FRAC_PI_4).sin_cos();
+                starts.push(x + Vector2::new(c, s) * radius * extent);
+            }
+        }
+        for start in starts {
+            let (path, _) = motion.rollout(&start, longest / 400.0, 2.0 * longest, 0.01 * extent);
+            let left = path.last().map_or(f64::INFINITY, |x| (x - motion.attractor).norm());
+            assert!(left < 0.05 * extent, "{skill}: from {start} it is still {left} m away");
+        }
+        assert_eq!(found.quality.robust, found.quality.beside, "{skill}");
+    }
+}
+
 /// The motions of the LASA set, where somebody has it: `PLIANT_LASA=folder`.
 #[test]
 fn every_lasa_motion_is_learnt_and_certified() {

@@ -107,6 +107,8 @@ impl HeldOut {
                 pace: mean(|q| q.pace),
                 converged: all.iter().map(|q| q.converged).sum(),
                 rollouts: all.iter().map(|q| q.rollouts).sum(),
+                robust: all.iter().map(|q| q.robust).sum(),
+                beside: all.iter().map(|q| q.beside).sum(),
             },
             worst: all.iter().map(|q| q.dtwd).fold(0.0, f64::max),
         })

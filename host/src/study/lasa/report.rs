@@ -112,6 +112,8 @@ fn medians<'a>(all: impl Iterator<Item = &'a Quality> + Clone) -> Option<Quality
         pace: of(|q| q.pace)?,
         converged: all.clone().map(|q| q.converged).sum(),
         rollouts: all.clone().map(|q| q.rollouts).sum(),
+        robust: all.clone().map(|q| q.robust).sum(),
+        beside: all.clone().map(|q| q.beside).sum(),
     })
 }
 

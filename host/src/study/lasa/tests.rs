@@ -54,7 +54,17 @@ fn what_is_held_out_is_not_learnt_from() {
 
 #[test]
 fn a_mean_is_over_demonstrations_and_counts_add_up() {
-    let one = Quality { rmse: 1.0, e_dot: 0.5, dtwd: 2.0, path_error: 0.0, pace: 1.0, converged: 1, rollouts: 1 };
+    let one = Quality {
+        rmse: 1.0,
+        e_dot: 0.5,
+        dtwd: 2.0,
+        path_error: 0.0,
+        pace: 1.0,
+        converged: 1,
+        rollouts: 1,
+        robust: 1,
+        beside: 2,
+    };
     let HeldOut { mean, worst } = HeldOut::of(&[one, Quality { rmse: 3.0, dtwd: 8.0, converged: 0, ..one }]).unwrap();
     assert_eq!((mean.rmse, mean.dtwd, mean.converged, mean.rollouts), (2.0, 5.0, 1, 2));
     assert_eq!((worst, HeldOut::of(&[])), (8.0, None));
