@@ -2,7 +2,7 @@
 //!
 //! Both hold a Gaussian mixture over positions (`Priors`, `Mu`, `Sigma`), a linear system a component (`A`) and the attractor; neither
 //! keeps the P that it was learnt with. Where a file has one (`P`) it is checked; where it has none, or one that does not prove
-//! it, P is [searched](lyapunov::search), and a model without is refused.
+//! it, P is searched, and a model without is refused.
 
 mod fields;
 mod lyapunov;

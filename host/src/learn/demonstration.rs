@@ -82,7 +82,7 @@ pub struct Demonstration {
 }
 
 impl Demonstration {
-    /// Checks one recording and cleans it: exact repeats and rests are left out, of more than [`MOST_SAMPLES`] samples means
+    /// Checks one recording and cleans it: exact repeats and rests are left out, of more than 2000 samples means
     /// are taken, and velocities that are not given are computed from the positions.
     pub fn new(
         name: impl Into<String>,

@@ -1,6 +1,6 @@
 //! The studies and experiments of the paper, run again: tables, figures, and whether its claims hold.
 //!
-//! Everything is computed three ways ([`column`]): the paper to the letter, Pliant's default, and the method the paper builds on. A part of the
+//! Everything is computed three ways ([`mod@column`]): the paper to the letter, Pliant's default, and the method the paper builds on. A part of the
 //! paper is a module: [`trajectories`] (Fig. 3), [`stiffness_time`] and [`reduction`] (Fig. 4), [`experiments`] (section V), and what the paper
 //! does not show, [`placements`]. Beside them [`lasa`] learns a whole set of motions. Each ends with [`Findings`]. The same seed gives the same findings on any number of cores.
 //!
