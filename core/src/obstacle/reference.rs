@@ -31,7 +31,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         times(&self.spec.rotation, &direction.zip_map(&self.hard, |d, hard| d * (hard / most)))
     }
 
-    /// The reference point of the root of the tree it belongs to (world's frame, m), where r leads from as far as it can; see [`Obstacle::arm`].
+    /// The reference point of the root of the tree it belongs to (world's frame, m), where r leads from as far as it can.
     pub fn hub(&self) -> Option<Vector<S, D>> {
         self.leans.then(|| self.reference() + self.lean)
     }
