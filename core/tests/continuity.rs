@@ -39,13 +39,16 @@ impl<S: Scalar, const D: usize> Line<'_, S, D> {
         (stages.gamma.to_f64() > NEAREST && !pole).then(|| numbers(&stages.adapted))
     }
 
-    /// A bound on the slope here, 1/s: where a reference point is seen slantingly (a shared one, or a polygon's) the flow past its obstacle goes
+    /// A bound on the slope here, 1/s: where a reference point is seen slantingly (a shared one, a tree's, or a polygon's) the flow past its obstacle goes
     /// with |g| |r| / (g.r), and the slope with its square.
     fn slope(&self, along: f64) -> f64 {
         let x = (self.from + self.way * along).map(S::from_f64);
         let slant = |o: &Obstacle<S, D>| {
             let (g, r) = (numbers(&o.gradient(&x)), numbers(&(x - o.reference())));
-            g.norm() * r.norm() / g.dot(&r).max(1e-9)
+            // In a tree r leans towards the root's reference point by a share of h, which depends on where x is, down to a tenth of g.r.
+            let h = o.hub().map_or_else(Vector::zeros, |hub| numbers(&(hub - o.reference())));
+            let left = (g.dot(&r) - g.dot(&h)).max(0.1 * g.dot(&r)).min(g.dot(&r));
+            g.norm() * (r.norm() + h.norm()) / left.max(1e-9)
         };
         // In fixed point the gradient itself does not fit far from a superellipsoid, of which nothing is seen slantingly.
         let fits = |o: &&Obstacle<S, D>| o.gradient(&x).iter().all(|g| g.abs() < S::from_f64(2047.0));
