@@ -21,12 +21,12 @@ impl<S: Number, const D: usize> Skill<S, D> {
     /// With so many components, 1 to 16; always the same ones.
     ///
     /// ```
-    /// use pliant_core::Motion;
+    /// use pliant_core::{Motion, Vector};
     /// let skill = pliant_bench::skill::Skill::<f64, 2>::new(8);
     /// let Motion::Lpv(ds) = &skill.motion else { panic!() };
     /// assert_eq!((ds.components().len(), skill.positions.len()), (8, 256));
     /// // Nowhere do they differ by that much: no exponent lies 40 below another, so all are computed.
-    /// let deep = |k: usize, x| (ds.components()[k].whitening * (x - ds.components()[k].mean)).norm_squared() / 2.0;
+    /// let deep = |k: usize, x: &Vector<f64, 2>| (ds.components()[k].whitening * (x - ds.components()[k].mean)).norm_squared() / 2.0;
     /// assert!(skill.positions.iter().all(|x| (0..8).all(|k| deep(k, x) < 38.0)));
     /// ```
     #[allow(clippy::expect_used, reason = "numbers that are refused are a mistake in here")]
