@@ -104,7 +104,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// The first field that is out of its range, as [`ObstacleError`] states it.
     pub fn new(spec: ObstacleSpec<S, D>) -> Result<Self, ObstacleError> {
         spec.check()?;
-        let (body, unit) = spec.shape.body();
+        let (body, unit) = spec.shape.body(spec.wall);
         if !(body.sight(&spec.shape, &spec.reference.component_div(&unit)).0 < S::one()) {
             return Err(ObstacleError::Reference);
         }

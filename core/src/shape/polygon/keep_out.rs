@@ -1,0 +1,200 @@
+//! Keeping a point out of a polygon: a half-space for each of its convex pieces.
+//!
+//! Off a piece, behind any line that has all of it behind, keeps off it exactly; off every piece, off the whole, corners and notches included.
+
+use super::pieces::{Piece, Pieces, Run};
+use super::{Edge, MAX_VERTICES, dot, plane, size, sub, vector};
+use crate::shape::Place;
+use crate::{Scalar, Vector};
+
+/// See [`crate::shape::Surface::keep_out`].
+pub(super) fn keep_out<S: Scalar, const D: usize>(
+    edges: impl Iterator<Item = Edge<S>>,
+    pieces: &Pieces,
+    at: &Place<'_, S, D>,
+    mut keep: impl FnMut(Vector<S, D>, S),
+) {
+    let fastest = at.inverse.iter().fold(S::zero(), |m, i| m.max(*i));
+    let mut view =
+        View { edges: heapless::Vec::new(), wall: at.wall, u: plane(&at.u), wish: plane(&at.wish), share: at.share };
+    view.look(edges);
+    for piece in pieces.iter() {
+        if let Some(side) = view.side(piece)
+            && side.gap < at.reach * fastest * size(side.normal)
+        {
+            keep(vector::<S, D>(side.normal).component_mul(at.inverse), side.gap);
+        }
+    }
+}
+
+/// A polygon's edges (of a wall: of all that is outside) as they look from the point to keep out, where that wishes to go, and the share of its
+/// distance that it may use up.
+struct View<S> {
+    edges: heapless::Vec<Seen<S>, MAX_VERTICES>,
+    wall: bool,
+    u: [S; 2],
+    wish: [S; 2],
+    share: S,
+}
+
+/// An edge as it looks from u.
+struct Seen<S> {
+    from: [S; 2],
+    to: [S; 2],
+    /// Its line to keep behind.
+    line: Side<S>,
+    /// Is u before its first corner? Is it beyond its last?
+    before: bool,
+    past: bool,
+    /// The distance of its first corner if u is before that, else of its line.
+    distance: S,
+}
+
+/// A line to keep behind: its normal, of any length, and how far u is beyond it, times that length.
+#[derive(Clone, Copy)]
+struct Side<S> {
+    normal: [S; 2],
+    gap: S,
+}
+
+/// What is nearest of an outline.
+#[derive(Clone, Copy)]
+enum Nearest<'a, S> {
+    /// A point within an edge.
+    Edge(&'a Seen<S>),
+    /// The corner that an edge begins with, where its outline has the one before, too.
+    Corner(&'a Seen<S>),
+    /// One of its ends.
+    End,
+}
+
+impl<S: Scalar> View<S> {
+    fn look(&mut self, edges: impl Iterator<Item = Edge<S>>) {
+        // A corner counts where both edges say that it is nearer than they are: a line through it has both behind it then, to the last digit.
+        let rounding = S::EPSILON * S::from_f64(8.0);
+        for Edge { from, to, along, normal } in edges {
+            let corner = sub(self.u, from);
+            let over = dot(normal, self.u) - S::one();
+            let line = if self.wall {
+                Side { normal: [-normal[0], -normal[1]], gap: -over }
+            } else {
+                Side { normal, gap: over }
+            };
+            let before = -dot(corner, along) >= rounding;
+            let past = !(dot(sub(self.u, to), along) < rounding);
+            let distance = if before { S::norm(&corner) } else { over.abs() / S::norm(&normal) };
+            // Cannot be full: a polygon has no more.
+            let _ = self.edges.push(Seen { from, to, line, before, past, distance });
+        }
+    }
+
+    /// Calls `each` with every edge of a run.
+    fn each<'a>(&'a self, run: &Run, mut each: impl FnMut(&'a Seen<S>)) {
+        let mut i = usize::from(run.first);
+        for _ in 0..run.count {
+            let Some(edge) = self.edges.get(i) else { return };
+            each(edge);
+            i += 1;
+            if i == self.edges.len() {
+                i = 0;
+            }
+        }
+    }
+
+    /// The line to keep behind for a piece.
+    fn side(&self, piece: &Piece) -> Option<Side<S>> {
+        let whole = usize::from(piece.edges.count) == self.edges.len();
+        match self.nearest(&piece.outline, whole) {
+            Nearest::Edge(edge) if edge.line.gap > S::zero() => return Some(edge.line),
+            Nearest::Corner(edge) => {
+                let (gap, normal) = S::unit(sub(self.u, edge.from));
+                return Some(Side { normal, gap });
+            }
+            _ => {}
+        }
+        let mut best = Best { wish: self.wish, share: self.share, best: None };
+        self.each(&piece.outline, |edge| best.consider(edge.line));
+        if !whole {
+            self.beside(&piece.edges, &mut best);
+        }
+        Some(best.best?.side)
+    }
+
+    /// The sides along the rays through a piece's first and last corners, and across the way to the origin where all of it is beyond that. Only whoever
+    /// is beyond one keeps behind it: from within, the way out is over an edge.
+    fn beside(&self, piece: &Run, best: &mut Best<S>) {
+        let (mut first, mut last) = (None, None);
+        self.each(piece, |edge| {
+            first = first.or(Some(edge.from));
+            last = Some(edge.to);
+        });
+        let (Some(from), Some(to)) = (first, last) else { return };
+        for normal in [[from[1], -from[0]], [-to[1], to[0]]] {
+            let gap = dot(normal, self.u);
+            if gap > S::zero() {
+                best.consider(Side { normal, gap });
+            }
+        }
+        let (gap, normal) = S::unit(self.u);
+        if gap > S::zero() && [from, to].iter().all(|v| dot(*v, normal) <= S::zero()) {
+            best.consider(Side { normal, gap });
+        }
+    }
+
+    /// What is nearest of an outline. That of a polygon which is `whole` has no ends; any other has, if only the two sides of a notch.
+    fn nearest(&self, outline: &Run, whole: bool) -> Nearest<'_, S> {
+        // Is u past the edge before, if there is one?
+        let mut came_past = if whole { self.edges.last().map(|e| e.past) } else { None };
+        let (mut least, mut nearest) = (S::MAX, Nearest::End);
+        let mut last = None;
+        self.each(outline, |edge| {
+            let found = match (edge.before, came_past) {
+                (true, Some(false)) => None,
+                (true, Some(true)) => Some(Nearest::Corner(edge)),
+                (true, None) => Some(Nearest::End),
+                (false, _) if edge.past => None,
+                (false, _) => Some(Nearest::Edge(edge)),
+            };
+            if let Some(found) = found
+                && edge.distance < least
+            {
+                (least, nearest) = (edge.distance, found);
+            }
+            (came_past, last) = (Some(edge.past), Some(edge));
+        });
+        match last {
+            Some(edge) if !whole && edge.past && !edge.before && S::norm(&sub(self.u, edge.to)) < least => Nearest::End,
+            _ => nearest,
+        }
+    }
+}
+
+/// Of the lines that u is beyond, the one that cuts its wish the least (that leaves most of the share that may be used up); if it is beyond none, the
+/// one it is least behind.
+struct Best<S> {
+    wish: [S; 2],
+    share: S,
+    best: Option<Candidate<S>>,
+}
+
+struct Candidate<S> {
+    side: Side<S>,
+    /// That of the normal, and what the wish leaves, times that.
+    length: S,
+    left: S,
+}
+
+impl<S: Scalar> Best<S> {
+    fn consider(&mut self, side: Side<S>) {
+        let length = S::norm(&side.normal);
+        let left = side.gap * self.share + dot(side.normal, self.wish);
+        let better = self.best.as_ref().is_none_or(|best| match (side.gap > S::zero(), best.side.gap > S::zero()) {
+            (true, true) => left * best.length > best.left * length,
+            (false, false) => side.gap * best.length > best.side.gap * length,
+            (beyond, _) => beyond,
+        });
+        if better {
+            self.best = Some(Candidate { side, length, left });
+        }
+    }
+}
