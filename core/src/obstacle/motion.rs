@@ -7,17 +7,31 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// Carries pose and size on by `dt` seconds.
     #[inline(always)]
     pub(crate) fn advance(&mut self, dt: S) {
-        if !self.moves {
+        self.advance_and_age(dt, S::zero());
+    }
+
+    /// The same, and makes the core larger by ageing, for this time at `rate` m/s. The soft layer stays where it is: margin wins over softness.
+    #[inline(always)]
+    pub(crate) fn advance_and_age(&mut self, dt: S, rate: S) {
+        let ages = rate != S::zero();
+        if !(self.moves || ages) {
             return;
         }
         self.spec.center += self.spec.velocity * dt;
         if self.spins {
             self.spec.rotation = rotation::turned(&self.spec.rotation, &self.spec.spin, dt);
-            self.pose_changed();
         }
+        if ages {
+            self.aged += rate * dt;
+        }
+        // What follows from pose and size is found once, whatever has changed.
         if self.spec.growth != S::zero() {
             self.grown += self.spec.growth * dt;
             self.rescale();
+        } else if ages {
+            self.inflate();
+        } else if self.spins {
+            self.pose_changed();
         }
     }
 
@@ -36,7 +50,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         }
     }
 
-    /// Makes the core larger by ageing, for `dt` seconds at `rate` m/s. The soft layer stays where it is: margin wins over softness.
+    /// Makes the core larger by ageing alone.
     pub(crate) fn age(&mut self, rate: S, dt: S) {
         self.aged += rate * dt;
         self.inflate();

@@ -198,10 +198,11 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 entry.obstacle.hold();
                 continue;
             }
-            entry.obstacle.advance(dt);
             if entry.age >= ageing.time_to_live {
                 status |= Status::EXTRAPOLATED;
-                entry.obstacle.age(ageing.growth, dt);
+                entry.obstacle.advance_and_age(dt, ageing.growth);
+            } else {
+                entry.obstacle.advance(dt);
             }
             entry.age += dt;
         }
