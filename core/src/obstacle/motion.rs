@@ -4,6 +4,12 @@ use super::Obstacle;
 use crate::{Matrix, Scalar, Vector, is_zero, rotation};
 
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
+    /// Does it move, turn or grow?
+    #[inline(always)]
+    pub(crate) fn moves(&self) -> bool {
+        self.moves
+    }
+
     /// Carries pose and size on by `dt` seconds.
     #[inline(always)]
     pub(crate) fn advance(&mut self, dt: S) {

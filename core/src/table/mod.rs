@@ -225,10 +225,12 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         let (mut gamma, mut nearest) = (S::MAX, None);
         for (index, entry) in self.entries.iter().enumerate() {
             let sample = entry.obstacle.sample(x);
-            if let Some((reach, dt)) = reach {
-                // How far its surface may come in a step, and as much again for the curve of its way.
-                let fastest = sample.surface_velocity.iter().fold(S::zero(), |sum, s| sum + s.abs());
-                let reach = reach + fastest * (dt + dt);
+            if let Some((mut reach, dt)) = reach {
+                if entry.obstacle.moves() {
+                    // How far its surface may come in a step, and as much again for the curve of its way.
+                    let fastest = sample.surface_velocity.iter().fold(S::zero(), |sum, s| sum + s.abs());
+                    reach += fastest * (dt + dt);
+                }
                 if entry.obstacle.is_near(sample.gamma, reach) {
                     let _ = around.near.push((index, reach));
                 }
@@ -236,6 +238,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             if !(sample.gamma < S::FAR) {
                 continue;
             }
+            // First, so that what follows need not keep the sample at hand.
+            modulation.push(&sample);
             // The usual answer first.
             if entry.obstacle.may_be_soft(sample.gamma)
                 && deformable
@@ -247,7 +251,6 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             if sample.gamma < gamma {
                 (gamma, nearest) = (sample.gamma, Some(entry));
             }
-            modulation.push(&sample);
         }
         let (of_obstacles, mut points) = (gamma, None);
         if !self.scan.points().is_empty() {
