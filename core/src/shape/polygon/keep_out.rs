@@ -43,11 +43,19 @@ struct Seen<S> {
     to: [S; 2],
     /// Its line to keep behind.
     line: Side<S>,
-    /// Is u before its first corner? Is it beyond its last?
-    before: bool,
-    past: bool,
-    /// The distance of its first corner if u is before that, else of its line.
+    along: Along,
+    /// Where u is before it, the distance of its first corner; where u is within it, of its line.
     distance: S,
+}
+
+/// Where a point is along an edge.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Along {
+    /// Before its first corner.
+    Before,
+    Within,
+    /// Beyond its last.
+    Past,
 }
 
 /// A line to keep behind: its normal, of any length, and how far u is beyond it, times that length.
@@ -80,11 +88,15 @@ impl<S: Scalar> View<S> {
             } else {
                 Side { normal, gap: over }
             };
-            let before = -dot(corner, along) >= rounding;
-            let past = !(dot(sub(self.u, to), along) < rounding);
-            let distance = if before { S::norm(&corner) } else { over.abs() / S::norm(&normal) };
+            let (along, distance) = if -dot(corner, along) >= rounding {
+                (Along::Before, S::norm(&corner))
+            } else if dot(sub(self.u, to), along) < rounding {
+                (Along::Within, over.abs() / S::norm(&normal))
+            } else {
+                (Along::Past, S::MAX)
+            };
             // Cannot be full: a polygon has no more.
-            let _ = self.edges.push(Seen { from, to, line, before, past, distance });
+            let _ = self.edges.push(Seen { from, to, line, along, distance });
         }
     }
 
@@ -143,27 +155,26 @@ impl<S: Scalar> View<S> {
 
     /// What is nearest of an outline. That of a polygon which is `whole` has no ends; any other has, if only the two sides of a notch.
     fn nearest(&self, outline: &Run, whole: bool) -> Nearest<'_, S> {
-        // Is u past the edge before, if there is one?
-        let mut came_past = if whole { self.edges.last().map(|e| e.past) } else { None };
+        // Where u is along the edge before, if there is one.
+        let mut before = if whole { self.edges.last().map(|e| e.along) } else { None };
         let (mut least, mut nearest) = (S::MAX, Nearest::End);
         let mut last = None;
         self.each(outline, |edge| {
-            let found = match (edge.before, came_past) {
-                (true, Some(false)) => None,
-                (true, Some(true)) => Some(Nearest::Corner(edge)),
-                (true, None) => Some(Nearest::End),
-                (false, _) if edge.past => None,
-                (false, _) => Some(Nearest::Edge(edge)),
+            let found = match (edge.along, before) {
+                (Along::Before, Some(Along::Past)) => Some(Nearest::Corner(edge)),
+                (Along::Before, None) => Some(Nearest::End),
+                (Along::Within, _) => Some(Nearest::Edge(edge)),
+                (Along::Before, Some(_)) | (Along::Past, _) => None,
             };
             if let Some(found) = found
                 && edge.distance < least
             {
                 (least, nearest) = (edge.distance, found);
             }
-            (came_past, last) = (Some(edge.past), Some(edge));
+            (before, last) = (Some(edge.along), Some(edge));
         });
         match last {
-            Some(edge) if !whole && edge.past && !edge.before && S::norm(&sub(self.u, edge.to)) < least => Nearest::End,
+            Some(edge) if !whole && edge.along == Along::Past && S::norm(&sub(self.u, edge.to)) < least => Nearest::End,
             _ => nearest,
         }
     }
