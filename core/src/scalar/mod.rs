@@ -109,6 +109,6 @@ pub trait Scalar:
     }
     /// x^n for a whole n >= 0, by repeated multiplication.
     fn powi(self, n: u8) -> Self {
-        (0..n).fold(Self::one(), |y, _| y * self)
+        if n == 0 { Self::one() } else { (1..n).fold(self, |y, _| y * self) }
     }
 }

@@ -264,7 +264,8 @@ proptest! {
         let polygon = Polygon::new(&corners).unwrap();
         let spec = ObstacleSpec { shape: Shape::Polygon(polygon.clone()), ..ObstacleSpec::default() };
         prop_assume!(Obstacle::new(spec.clone()).is_ok());
-        let (scaled, longest) = polygon.scaled();
+        let shape = Shape::<f64, 2>::Polygon(polygon);
+        let (body, scale) = shape.body(false);
         // Out to the nearest of the edges' lines.
         let unit: V2 = unit(towards);
         let room = |p: &V2, i: usize| {
@@ -284,8 +285,8 @@ proptest! {
                 let (from, to) = (V2::from(corners[corner]), V2::from(to));
                 let x = (from + (to - from) * libm::pow(10.0, along)) * (1.0 + libm::pow(10.0, far));
                 for seen in [zero, reference] {
-                    let (gamma, normal) = scaled.level(&(x / longest));
-                    let away = normal.dot(&((x - seen) / longest)) / libm::sqrt(gamma);
+                    let (gamma, normal) = body.level(&shape, &x.component_div(&scale));
+                    let away = normal.dot(&(x - seen).component_div(&scale)) / libm::sqrt(gamma);
                     prop_assert!(away > 0.099, "{} from {} of {:?} at {}", away, seen, corners, x);
                 }
             }

@@ -3,13 +3,13 @@
 //! Off a piece, behind any line that has all of it behind, keeps off it exactly; off every piece, off the whole, corners and notches included.
 
 use super::pieces::{Piece, Pieces, Run};
-use super::{Edge, MAX_VERTICES, dot, plane, size, sub, vector};
+use super::{MAX_VERTICES, dot, plane, sub, vector};
 use crate::shape::Place;
 use crate::{Scalar, Vector};
 
-/// See [`crate::shape::Surface::keep_out`].
+/// See [`crate::shape::Surface::keep_out`]; an edge goes from one corner to the next.
 pub(super) fn keep_out<S: Scalar, const D: usize>(
-    edges: impl Iterator<Item = Edge<S>>,
+    edges: impl Iterator<Item = ([S; 2], [S; 2])>,
     pieces: &Pieces,
     at: &Place<'_, S, D>,
     mut keep: impl FnMut(Vector<S, D>, S),
@@ -20,7 +20,7 @@ pub(super) fn keep_out<S: Scalar, const D: usize>(
     view.look(edges);
     for piece in pieces.iter() {
         if let Some(side) = view.side(piece)
-            && side.gap < at.reach * fastest * size(side.normal)
+            && side.gap < at.reach * fastest
         {
             keep(vector::<S, D>(side.normal).component_mul(at.inverse), side.gap);
         }
@@ -58,7 +58,7 @@ enum Along {
     Past,
 }
 
-/// A line to keep behind: its normal, of any length, and how far u is beyond it, times that length.
+/// A line to keep behind: its unit normal, and how far u is beyond it.
 #[derive(Clone, Copy)]
 struct Side<S> {
     normal: [S; 2],
@@ -77,21 +77,18 @@ enum Nearest<'a, S> {
 }
 
 impl<S: Scalar> View<S> {
-    fn look(&mut self, edges: impl Iterator<Item = Edge<S>>) {
+    fn look(&mut self, edges: impl Iterator<Item = ([S; 2], [S; 2])>) {
         // A corner counts where both edges say that it is nearer than they are: a line through it has both behind it then, to the last digit.
         let rounding = S::EPSILON * S::from_f64(8.0);
-        for Edge { from, to, along, normal } in edges {
-            let corner = sub(self.u, from);
-            let over = dot(normal, self.u) - S::one();
-            let line = if self.wall {
-                Side { normal: [-normal[0], -normal[1]], gap: -over }
-            } else {
-                Side { normal, gap: over }
-            };
+        for (from, to) in edges {
+            let (corner, along) = (sub(self.u, from), sub(to, from));
+            let ahead = S::unit(along).1;
+            let normal = if self.wall { [-ahead[1], ahead[0]] } else { [ahead[1], -ahead[0]] };
+            let line = Side { normal, gap: dot(normal, corner) };
             let (along, distance) = if -dot(corner, along) >= rounding {
                 (Along::Before, S::norm(&corner))
             } else if dot(sub(self.u, to), along) < rounding {
-                (Along::Within, over.abs() / S::norm(&normal))
+                (Along::Within, line.gap.abs())
             } else {
                 (Along::Past, S::MAX)
             };
@@ -142,9 +139,9 @@ impl<S: Scalar> View<S> {
         });
         let (Some(from), Some(to)) = (first, last) else { return };
         for normal in [[from[1], -from[0]], [-to[1], to[0]]] {
-            let gap = dot(normal, self.u);
-            if gap > S::zero() {
-                best.consider(Side { normal, gap });
+            if dot(normal, self.u) > S::zero() {
+                let normal = S::unit(normal).1;
+                best.consider(Side { normal, gap: dot(normal, self.u) });
             }
         }
         let (gap, normal) = S::unit(self.u);
@@ -190,22 +187,20 @@ struct Best<S> {
 
 struct Candidate<S> {
     side: Side<S>,
-    /// That of the normal, and what the wish leaves, times that.
-    length: S,
+    /// What the wish leaves.
     left: S,
 }
 
 impl<S: Scalar> Best<S> {
     fn consider(&mut self, side: Side<S>) {
-        let length = S::norm(&side.normal);
         let left = side.gap * self.share + dot(side.normal, self.wish);
         let better = self.best.as_ref().is_none_or(|best| match (side.gap > S::zero(), best.side.gap > S::zero()) {
-            (true, true) => left * best.length > best.left * length,
-            (false, false) => side.gap * best.length > best.side.gap * length,
+            (true, true) => left > best.left,
+            (false, false) => side.gap > best.side.gap,
             (beyond, _) => beyond,
         });
         if better {
-            self.best = Some(Candidate { side, length, left });
+            self.best = Some(Candidate { side, left });
         }
     }
 }

@@ -225,7 +225,7 @@ impl<S: Scalar, const D: usize> Surface<S, D> for InPieces<'_, S> {
     }
 
     fn keep_out(&self, at: &Place<'_, S, D>, keep: impl FnMut(Vector<S, D>, S)) {
-        keep_out::keep_out(self.polygon.edges(), self.pieces, at, keep);
+        keep_out::keep_out(self.polygon.pairs(), self.pieces, at, keep);
     }
 }
 
