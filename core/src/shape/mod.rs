@@ -245,6 +245,7 @@ impl<S: Scalar, const D: usize> Body<S, D> {
     }
 
     /// gamma(u), and the direction of its gradient.
+    #[inline(always)]
     pub fn level(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> (S, Vector<S, D>) {
         match (self, shape) {
             (Self::Superellipsoid(body), _) => body.level(u),
