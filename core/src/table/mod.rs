@@ -1,7 +1,7 @@
 //! The obstacles there are, in room for a fixed number of them.
 
 mod ageing;
-mod cluster;
+mod clusters;
 
 #[cfg(test)]
 mod tests;
@@ -11,7 +11,7 @@ pub use ageing::Ageing;
 use crate::modulation::Modulation;
 use crate::surroundings::Surroundings;
 use crate::{Obstacle, Scalar, Scan, Status, Vector};
-use cluster::Clusters;
+use clusters::Clusters;
 
 /// An obstacle, who it is, and how long ago it was seen.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,7 +57,7 @@ pub struct TableFull;
 #[derive(Clone, Debug)]
 pub struct Table<S: Scalar, const D: usize, const CAP: usize> {
     entries: heapless::Vec<Entry<S, D>, CAP>,
-    clusters: Clusters<S, D, CAP>,
+    clusters: Clusters<CAP>,
     scan: Scan<S, D>,
     revision: u32,
 }
@@ -79,14 +79,13 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     ///
     /// # Errors
     /// [`TableFull`]; then nothing has changed.
-    pub fn upsert(&mut self, id: u16, obstacle: Obstacle<S, D>, age: S, ageing: &Ageing<S>) -> Result<(), TableFull> {
-        self.put(id, obstacle, age, ageing)?;
-        while self.settle() {}
-        Ok(())
-    }
-
-    /// The same without looking which cores overlap.
-    fn put(&mut self, id: u16, mut obstacle: Obstacle<S, D>, age: S, ageing: &Ageing<S>) -> Result<(), TableFull> {
+    pub fn upsert(
+        &mut self,
+        id: u16,
+        mut obstacle: Obstacle<S, D>,
+        age: S,
+        ageing: &Ageing<S>,
+    ) -> Result<(), TableFull> {
         let age = age.max(S::zero()).min(ageing.hold);
         if age > S::zero() {
             obstacle.carry(age);
@@ -109,32 +108,21 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 self.entries.len().saturating_sub(1)
             }
         };
-        self.clusters.changed(index);
+        self.clusters.changed(index, &mut self.entries);
         self.revision = self.revision.wrapping_add(1);
         Ok(())
     }
 
     /// Takes an obstacle out; was it there?
     pub fn remove(&mut self, id: u16) -> bool {
-        let found = self.take(id);
-        while self.settle() {}
-        found
-    }
-
-    /// The same without finding reference points for those it overlapped.
-    fn take(&mut self, id: u16) -> bool {
         let Some(index) = self.entries.iter().position(|e| e.id == id) else {
             return false;
         };
         self.entries.swap_remove(index);
-        self.clusters.removed(index, self.entries.len());
+        let last = self.entries.len();
+        self.clusters.removed(index, last, &mut self.entries);
         self.revision = self.revision.wrapping_add(1);
         true
-    }
-
-    /// One step of the search for cores that overlap; false when nothing is left.
-    fn settle(&mut self) -> bool {
-        self.clusters.settle(&mut self.entries)
     }
 
     /// Puts a scan in the place of the one before; `age` is how many seconds ago it was taken. One without points takes it away.
