@@ -9,7 +9,7 @@
 //! step of the optimiser stays inside the certificate. Positions are relative to the attractor, in normalised units.
 
 use super::fit::MARGIN;
-use super::gmm::{MAX_COMPONENTS, Mixture, whitening};
+use super::gmm::{MAX_COMPONENTS, Mixture, cholesky, whitening};
 use nalgebra::{SMatrix, SVector};
 
 /// Parameters of one component, in the order of a row of the Jacobian: w, mu, W, L, S. B of them: 10 in the plane, 19 in space.
@@ -286,24 +286,4 @@ impl<const D: usize> Field<D> {
             .collect::<Option<_>>()?;
         Mixture::new(priors, self.parts.iter().map(|c| c.mean).collect(), covariances)
     }
-}
-
-/// Lower triangular L with L L' = m.
-pub fn cholesky<const D: usize>(m: &SMatrix<f64, D, D>) -> Option<SMatrix<f64, D, D>> {
-    let mut l = SMatrix::<f64, D, D>::zeros();
-    for i in 0..D {
-        for j in 0..=i {
-            let dot: f64 = (0..j).map(|n| l[(i, n)] * l[(j, n)]).sum();
-            let rest = m[(i, j)] - dot;
-            if i == j {
-                if !(rest > 0.0 && rest.is_finite()) {
-                    return None;
-                }
-                l[(i, i)] = rest.sqrt();
-            } else {
-                l[(i, j)] = rest / l[(j, j)];
-            }
-        }
-    }
-    Some(l)
 }

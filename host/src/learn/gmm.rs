@@ -92,14 +92,14 @@ impl<const D: usize> Mixture<D> {
     }
 }
 
-/// W with W'W = covariance^-1 and lower triangular, and log det covariance.
-pub fn whitening<const D: usize>(covariance: &SMatrix<f64, D, D>) -> Option<(SMatrix<f64, D, D>, f64)> {
-    // Cholesky by hand: nalgebra's needs bounds on D that a const generic cannot state.
+/// Lower triangular L with L L' = m.
+pub fn cholesky<const D: usize>(m: &SMatrix<f64, D, D>) -> Option<SMatrix<f64, D, D>> {
+    // By hand: nalgebra's needs bounds on D that a const generic cannot state.
     let mut l = SMatrix::<f64, D, D>::zeros();
     for i in 0..D {
         for j in 0..=i {
-            let dot: f64 = (0..j).map(|m| l[(i, m)] * l[(j, m)]).sum();
-            let rest = covariance[(i, j)] - dot;
+            let dot: f64 = (0..j).map(|n| l[(i, n)] * l[(j, n)]).sum();
+            let rest = m[(i, j)] - dot;
             if i == j {
                 if !(rest > 0.0 && rest.is_finite()) {
                     return None;
@@ -110,6 +110,12 @@ pub fn whitening<const D: usize>(covariance: &SMatrix<f64, D, D>) -> Option<(SMa
             }
         }
     }
+    Some(l)
+}
+
+/// W with W'W = covariance^-1 and lower triangular, and log det covariance.
+pub fn whitening<const D: usize>(covariance: &SMatrix<f64, D, D>) -> Option<(SMatrix<f64, D, D>, f64)> {
+    let l = cholesky(covariance)?;
     let mut w = SMatrix::<f64, D, D>::zeros();
     for j in 0..D {
         for i in j..D {

@@ -5,8 +5,8 @@
 //! the path has to give way, and the half space of falling V how much the velocity has to. P is where these cost least. What is learnt are the
 //! paths that give way: they can be followed, and so their velocities belong together.
 
-use super::field::cholesky;
 use super::fit::{MAX_CONDITION, condition};
+use super::gmm::cholesky;
 use super::refine::Path;
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
