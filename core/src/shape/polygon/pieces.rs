@@ -106,7 +106,7 @@ impl<S: Scalar> Body<S> {
     /// Has the i-th edge's line all of a piece behind it?
     fn holds(&self, i: usize, piece: &Run) -> bool {
         let Some(edge) = self.edge(i) else { return false };
-        // What rounding lets stick out is less than the skin.
+        // What rounding lets stick out the line is moved for; see `side`.
         let rounding = S::rounding(size(edge.normal)) * S::from_f64(4.0);
         let behind = |v| {
             let over = dot(edge.normal, v) - S::one();
@@ -140,8 +140,30 @@ impl<S: Scalar> Body<S> {
         outline
     }
 
-    /// The line to keep behind for a piece.
+    /// The line to keep behind for a piece: moved out to where it has every corner of that behind it, whatever rounding made of its direction.
     fn side(&self, piece: &Run, here: &Here<S>) -> Option<Side<S>> {
+        let chosen = self.chosen(piece, here)?;
+        let held = self.held(piece, chosen.normal, chosen.gap, here);
+        if held.gap + S::rounding(size(held.normal)) * S::from_f64(4.0) >= chosen.gap {
+            return Some(held);
+        }
+        // A short edge may be turned so far that its line is no longer the piece's. Then another's will do.
+        let mut best = Best { side: Some(held) };
+        for edge in self.run(&self.outline(piece)) {
+            let side = self.beyond(edge, here);
+            best.consider(self.held(piece, side.normal, side.gap, here));
+        }
+        best.side
+    }
+
+    /// Across this normal and no farther off than this gap, with every corner of a piece behind.
+    fn held(&self, piece: &Run, normal: [S; 2], gap: S, here: &Here<S>) -> Side<S> {
+        let corners = self.run(piece).flat_map(|edge| [edge.from, edge.to]);
+        here.side(normal, corners.fold(gap, |least, v| least.min(dot(normal, sub(here.u, v)))))
+    }
+
+    /// The same but for rounding.
+    fn chosen(&self, piece: &Run, here: &Here<S>) -> Option<Side<S>> {
         let whole = piece.count == self.edges.len();
         let outline = self.outline(piece);
         if let Some(side) = self.nearest(&outline, whole, here) {
