@@ -59,6 +59,9 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     swelling: S,
     /// 1/radius of the largest ball inside, 1/m.
     slimmest: S,
+    /// What rounding may do to a distance from the surface, m; and the gauge so far out.
+    blur: S,
+    rim: S,
     /// The lengths at which hard scaled coordinates are one before ageing, m, and how much longer each becomes for each metre of it.
     young: Vector<S, D>,
     per_metre: Vector<S, D>,
@@ -123,6 +126,8 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             spins: false,
             swelling: S::zero(),
             slimmest: S::one(),
+            blur: S::zero(),
+            rim: S::one(),
             young: nothing,
             per_metre: unit.component_div(&extent),
             unit,
@@ -236,12 +241,11 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     #[inline(always)]
     pub(crate) fn is_near(&self, gamma: S, reach: S) -> bool {
         // The gauge is gamma^(1/2p) and changes by no more than `slimmest` a metre.
-        let change = reach * self.slimmest;
+        let gauge = self.rim + reach * self.slimmest;
         if self.plain {
-            let gauge = S::one() + change;
             return gamma <= gauge * gauge;
         }
-        self.is_within(gamma, change)
+        self.is_within(gamma, gauge - S::one())
     }
 
     /// May the gauge be 1 where it differs by `change`, at most, from that of a point with this Gamma?
@@ -255,6 +259,11 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         } else {
             gamma <= ((one + change) * (one + change)).powi(self.body.power())
         }
+    }
+
+    /// What rounding may do to a distance from the hard surface because of the body's size, m.
+    pub(crate) fn blur(&self) -> S {
+        self.blur
     }
 
     /// 1/(eta L), with growth and ageing, along the axes of the obstacle's frame, 1/m: of an ellipsoid 1/a.

@@ -4,7 +4,7 @@ use super::Obstacle;
 use crate::{Matrix, Scalar, Vector, is_zero, rotation};
 
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
-    /// Carries pose and size on by `dt` seconds.
+    /// Carries pose and size on by `dt` seconds, ageing included.
     #[inline(always)]
     pub(crate) fn advance(&mut self, dt: S) {
         if !self.moves {
@@ -18,6 +18,9 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         if self.spec.growth != S::zero() {
             self.grown += self.spec.growth * dt;
             self.rescale();
+        }
+        if self.ageing != S::zero() {
+            self.age(dt);
         }
     }
 
@@ -36,13 +39,14 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         }
     }
 
-    /// Makes the core larger by ageing, for `dt` seconds at `rate` m/s. The soft layer stays where it is: margin wins over softness.
-    pub(crate) fn age(&mut self, rate: S, dt: S) {
-        self.aged += rate * dt;
+    /// Makes the core larger by ageing, for `dt` seconds at the rate it [`ages`](Self::ages) at. The soft layer stays where it is: margin wins over
+    /// softness.
+    pub(crate) fn age(&mut self, dt: S) {
+        self.aged += self.ageing * dt;
         self.inflate();
     }
 
-    /// From now on it grows by ageing, at `rate` m/s.
+    /// From now on it grows by ageing, at `rate` m/s: what its surface velocity says, and what [`advance`](Self::advance) does.
     pub(crate) fn ages(&mut self, rate: S) {
         if rate != self.ageing {
             self.ageing = rate;
@@ -87,10 +91,13 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     fn inflate(&mut self) {
         let (aged, one) = (self.aged, S::one());
         let wall = self.spec.wall;
-        self.hard = self.young.zip_map(&self.per_metre, |l, more| {
-            one / if wall { (l - aged * more).max(l * S::from_f64(0.1)) } else { l + aged * more }
+        let lengths = self.young.zip_map(&self.per_metre, |l, more| {
+            if wall { (l - aged * more).max(l * S::from_f64(0.1)) } else { l + aged * more }
         });
+        self.hard = lengths.map(|l| one / l);
         self.slimmest = self.hard.iter().fold(S::zero(), |m, x| m.max(*x)) * self.inner;
+        self.blur = crate::guard::blur(lengths.iter().fold(S::zero(), |m, l| m.max(*l)));
+        self.rim = one + self.blur * self.slimmest;
         self.pose_changed();
     }
 

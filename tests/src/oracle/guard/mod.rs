@@ -14,7 +14,7 @@ use super::scene::OracleScene;
 use super::shape::{Inner, Shape, away, turned_right};
 pub(super) use nearest::{Bound, least_violation, nearest};
 
-/// Units of rounding, at the size of the position, that a gap is reduced by.
+/// Units of rounding, at the size of the position or of the body, that a gap is reduced by.
 const ROUNDING: f64 = 16.0;
 /// Nor less than this, m.
 const SKIN: f64 = 0.0000152587890625;
