@@ -144,14 +144,25 @@ impl<S: Scalar> Body<S> {
     fn side(&self, piece: &Run, here: &Here<S>) -> Option<Side<S>> {
         let chosen = self.chosen(piece, here)?;
         let held = self.held(piece, chosen.normal, chosen.gap, here);
-        if held.gap + S::rounding(size(held.normal)) * S::from_f64(4.0) >= chosen.gap {
+        let rounding = S::rounding(size(held.normal)) * S::from_f64(4.0) * (S::one() + size(here.u));
+        if held.gap + rounding >= chosen.gap {
             return Some(held);
         }
-        // A short edge may be turned so far that its line is no longer the piece's. Then another's will do.
+        // A short edge may be turned so far that its line is no longer the piece's. Then another line will do: along another edge, across the way from a
+        // corner, or one through the origin.
         let mut best = Best { side: Some(held) };
+        let mut consider = |side: Side<S>| best.consider(self.held(piece, side.normal, side.gap, here));
         for edge in self.run(&self.outline(piece)) {
-            let side = self.beyond(edge, here);
-            best.consider(self.held(piece, side.normal, side.gap, here));
+            consider(self.beyond(edge, here));
+        }
+        for corner in self.run(piece).flat_map(|edge| [edge.from, edge.to]) {
+            let (length, normal) = S::unit(sub(here.u, corner));
+            if length > S::zero() && (self.wall || dot(normal, here.u) >= length) {
+                consider(here.side(normal, length));
+            }
+        }
+        if piece.count < self.edges.len() {
+            self.through_origin(piece, here, consider);
         }
         best.side
     }
@@ -172,22 +183,26 @@ impl<S: Scalar> Body<S> {
         let mut best = Best { side: None };
         self.run(&outline).for_each(|edge| best.consider(self.beyond(edge, here)));
         if !whole {
-            // The sides along the rays through its first and last corners, and across the way to the origin where all of it is beyond that. Only whoever
-            // is beyond one keeps behind it: from within, the way out is over an edge.
-            let from = self.edge(piece.first)?.from;
-            let to = self.edge(piece.first + piece.count - 1)?.to;
-            for normal in [[from[1], -from[0]], [-to[1], to[0]]] {
-                let side = here.side(normal, dot(normal, here.u));
-                if side.gap > S::zero() {
-                    best.consider(side);
-                }
-            }
-            let (length, out) = S::unit(here.u);
-            if length > S::zero() && [from, to].iter().all(|v| dot(*v, out) <= S::zero()) {
-                best.consider(here.side(out, length));
-            }
+            self.through_origin(piece, here, |side| best.consider(side));
         }
         best.side
+    }
+
+    /// The sides along the rays through a piece's first and last corners, and across the way to the origin where all of it is beyond that. Only whoever is
+    /// beyond one keeps behind it: from within, the way out is over an edge.
+    fn through_origin(&self, piece: &Run, here: &Here<S>, mut consider: impl FnMut(Side<S>)) {
+        let ends = self.edge(piece.first).zip(self.edge(piece.first + piece.count - 1));
+        let Some((from, to)) = ends.map(|(first, last)| (first.from, last.to)) else { return };
+        for normal in [[from[1], -from[0]], [-to[1], to[0]]] {
+            let side = here.side(normal, dot(normal, here.u));
+            if side.gap > S::zero() {
+                consider(side);
+            }
+        }
+        let (length, out) = S::unit(here.u);
+        if length > S::zero() && [from, to].iter().all(|v| dot(*v, out) <= S::zero()) {
+            consider(here.side(out, length));
+        }
     }
 
     /// Behind an edge's line.
