@@ -9,7 +9,7 @@ const STEPS: (u8, f64) = (48, 0.9);
 /// and where a point inside will do.
 const STEPS_INSIDE: (u8, f64) = (24, 0.82);
 /// Of those, after so many it ends where it is inside.
-const STEPS_WELL: u8 = 12;
+const STEPS_AMPLE: u8 = 12;
 /// Halvings of the interval in which two ellipsoids have their common point.
 const HALVINGS: u8 = 26;
 /// Halvings of the way to where such a search starts.
@@ -51,9 +51,9 @@ pub(crate) enum Depth {
     /// Inside: the first point that is will do.
     Any,
     /// Well inside, if that is possible.
-    Well,
+    Ample,
     /// As deep as the search gets.
-    Most,
+    Deepest,
 }
 
 impl Depth {
@@ -61,8 +61,8 @@ impl Depth {
     fn enough<S: Scalar>(self) -> S {
         match self {
             Self::Any => S::one(),
-            Self::Well => S::from_f64(0.5),
-            Self::Most => S::zero(),
+            Self::Ample => S::from_f64(0.5),
+            Self::Deepest => S::zero(),
         }
     }
 }
@@ -106,65 +106,41 @@ pub(crate) fn between<S: Scalar, const D: usize>(
         _ => on_the_way(&a, &b, depth),
     };
     let walls = one.spec().wall || other.spec().wall;
-    if gamma < S::one() && (walls || depth != Depth::Most) {
+    if gamma < S::one() && (walls || depth != Depth::Deepest) {
         return Some(start);
     }
     // What sticks into a wall need not do so along the wall's normal, nor overlap on the way between the centres.
-    let members = [a, b];
-    let mut search = Search::new(&members, &start, depth);
-    while search.step(&members) {}
-    search.found()
+    search(&[a, b], &start, depth)
 }
 
-/// A search for a point inside several cores by bounded steps: each away from the one it is least inside of, along that one's Gamma.
-#[derive(Clone, Debug)]
-pub(crate) struct Search<S: Scalar, const D: usize> {
-    x: Vector<S, D>,
-    best: Option<(S, Vector<S, D>)>,
-    /// The length of the next step, m.
-    step: S,
-    shrink: S,
-    left: u8,
+/// A point inside several cores, m, by bounded steps: each away from the one it is least inside of, along that one's Gamma. The deepest of all it comes by,
+/// if that is inside all.
+pub(crate) fn search<S: Scalar, const D: usize>(
+    members: &[Inside<'_, S, D>],
+    start: &Vector<S, D>,
     depth: Depth,
-}
-
-impl<S: Scalar, const D: usize> Search<S, D> {
-    pub fn new(members: &[Inside<'_, S, D>], start: &Vector<S, D>, depth: Depth) -> Self {
-        let step = members.iter().fold(S::MAX, |m, o| m.min(o.obstacle().outer()));
-        let (left, shrink) = if depth == Depth::Most { STEPS } else { STEPS_INSIDE };
-        Self { x: *start, best: None, step, shrink: S::from_f64(shrink), left, depth }
-    }
-
-    /// One step; is there another? The members are the same for all.
-    pub fn step(&mut self, members: &[Inside<'_, S, D>]) -> bool {
-        let Some(left) = self.left.checked_sub(1) else { return false };
-        self.left = 0;
-        let x = &self.x;
-        let looks = members.iter().map(|o| (o.look(x), o));
-        let worst = looks.reduce(|worst, o| if o.0.0 > worst.0.0 { o } else { worst });
-        let Some(((gamma, slope), member)) = worst else { return false };
-        if self.best.as_ref().is_none_or(|(least, _)| gamma < *least) {
-            self.best = Some((gamma, *x));
+) -> Option<Vector<S, D>> {
+    let (mut x, mut best) = (*start, (S::one(), None));
+    let mut length = members.iter().fold(S::MAX, |m, o| m.min(o.obstacle().outer()));
+    let (steps, shrink) = if depth == Depth::Deepest { STEPS } else { STEPS_INSIDE };
+    for taken in 0..steps {
+        let looks = members.iter().map(|o| (o.look(&x), o));
+        let ((gamma, slope), worst) = looks.reduce(|worst, o| if o.0.0 > worst.0.0 { o } else { worst })?;
+        if gamma < best.0 {
+            best = (gamma, Some(x));
         }
-        let inside = self.best.as_ref().is_some_and(|(least, _)| *least < S::one());
-        if gamma < self.depth.enough() || inside && self.depth == Depth::Well && left < STEPS_INSIDE.0 - STEPS_WELL {
-            return false;
+        if gamma < depth.enough() || best.1.is_some() && depth == Depth::Ample && taken >= STEPS_AMPLE {
+            break;
         }
-        let (length, away) = unit(&member.obstacle().outward(&slope));
-        if !(length > S::zero()) || gamma >= S::one() && are_apart(members, member, x, gamma, &away) {
-            return false;
+        let (slopes, away) = unit(&worst.obstacle().outward(&slope));
+        if !(slopes > S::zero()) || gamma >= S::one() && are_apart(members, worst, &x, gamma, &away) {
+            break;
         }
         // A shrinking step: the maximum of convex functions has no other descent that is as simple.
-        self.x -= away * self.step;
-        self.step *= self.shrink;
-        self.left = left;
-        left > 0
+        x -= away * length;
+        length *= S::from_f64(shrink);
     }
-
-    /// The deepest point of the search, if it is inside all.
-    pub fn found(self) -> Option<Vector<S, D>> {
-        self.best.filter(|(gamma, _)| *gamma < S::one()).map(|(_, x)| x)
-    }
+    best.1
 }
 
 /// Is one of two members behind the tangent plane that the other, `one`, has on the ray from its centre to x, where it has this Gamma and its slope
@@ -257,7 +233,7 @@ fn halve<S: Scalar, const D: usize>(
         let (first, second) = levels(&x);
         let (most, least) = (first.max(second), first.min(second));
         // Of a point that need not be the deepest, a tenth more is not worth the way.
-        let near = depth != Depth::Most && most < S::one() && least > most * S::from_f64(0.9);
+        let near = depth != Depth::Deepest && most < S::one() && least > most * S::from_f64(0.9);
         if most < depth.enough() || least >= S::one() || near || left == 0 {
             return (most, x);
         }

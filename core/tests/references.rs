@@ -86,6 +86,32 @@ fn a_ball_at_a_polygons_end_leaves_it_its_reference_point() {
 }
 
 #[test]
+fn walls_keep_their_own_reference_points() {
+    let room = |x: f64| ObstacleSpec {
+        shape: Shape::Box { half: V::repeat(1.0), rounding: 0.1 },
+        wall: true,
+        center: V::new(x, 0.0),
+        ..ObstacleSpec::default()
+    };
+    // What sticks out of both free spaces connects the walls.
+    let specs = [room(0.0), room(0.05), ball(V::new(-0.9, 0.0), 0.2)];
+    for ids in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+        let mut c = controller(V::new(0.8, 0.0));
+        for (id, spec) in ids.into_iter().zip(&specs) {
+            c.upsert(id, Obstacle::new(spec.clone()).unwrap(), 0.0).unwrap();
+        }
+        for entry in c.table().iter().filter(|e| e.obstacle().spec().wall) {
+            assert_eq!(entry.obstacle().reference(), entry.obstacle().spec().center, "{ids:?}");
+        }
+        for i in 0..1600 {
+            let x = V::new(f64::from(i % 40) * 0.05 - 0.975, f64::from(i / 40) * 0.05 - 0.975);
+            let seen = c.evaluate(&RobotState::new(x).unwrap());
+            assert!(!(seen.gamma > 1.0 && seen.status.contains(Status::REFERENCE)), "{ids:?}: at {x:?}");
+        }
+    }
+}
+
+#[test]
 fn no_reference_point_is_lost_in_clusters_of_polygons() {
     let r = &mut random(2);
     let kind = Kind { obstacles: 6, speed: 0.0, walls: false, scans: false, odd: false };

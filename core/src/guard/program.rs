@@ -285,6 +285,9 @@ impl<S: Scalar, const D: usize> Programme<S, D> {
     }
 
     fn solve(&self, half_spaces: &mut [HalfSpace<S, D>]) -> Option<Vector<S, D>> {
+        if half_spaces.is_empty() {
+            return Some(self.best);
+        }
         let (centre, along) = (Vector::zeros(), Matrix::identity());
         self.solve_on(&Flat { dimension: D, centre, radius: self.speed, along }, self.best, half_spaces)
     }
@@ -302,7 +305,8 @@ impl<S: Scalar, const D: usize> Programme<S, D> {
             let bound = self.level.violation(&velocity) + self.tolerance;
             let Some(h) = worst_first(rest, &velocity, bound) else { break };
             let boundary = self.cut(flat, &h)?;
-            velocity = self.solve_on(&boundary, self.best_on(&boundary), done)?;
+            let best = self.best_on(&boundary);
+            velocity = if done.is_empty() { best } else { self.solve_on(&boundary, best, done)? };
         }
         Some(velocity)
     }

@@ -11,6 +11,7 @@
 use core::array::from_fn;
 
 use crate::obstacle::Sample;
+use crate::scalar::lanes::{Each, LANES, Lanes};
 use crate::{Scalar, Vector, norm, unit};
 
 /// The velocity past one obstacle:
@@ -23,29 +24,26 @@ use crate::{Scalar, Vector, norm, unit};
 /// plane) is tangential and stretched, the part along r is compressed. Neither g nor r need be of unit length. Where g.r is not positive,
 /// or so small that it may be rounding, there is no such split: then the answer is false, and s.
 #[inline(always)]
-fn past_one<S: Scalar, const D: usize>(
+fn past<S: Scalar, L: Lanes<S, N>, const N: usize, const D: usize>(
     f: &[S; D],
-    gamma: S,
-    outward: &[S; D],
-    arm: &[S; D],
-    surface_velocity: &[S; D],
-) -> (bool, [S; D]) {
-    let along = dot(outward, arm);
-    let usable = along > S::from_f64(1e-6) * size(outward) * size(arm);
-    let u: [S; D] = from_fn(|d| f[d] - surface_velocity[d]);
-    let inverse = S::one() / gamma.max(S::one());
-    let radial = (inverse + inverse) * (dot(outward, &u) / along);
-    let stretch = S::one() + inverse;
+    gamma: L,
+    outward: &[L; D],
+    arm: &[L; D],
+    surface_velocity: &[L; D],
+) -> (L::Mask, [L; D]) {
+    let one = L::splat(S::one());
+    let along = L::dot(outward, arm);
+    let usable = (L::splat(S::from_f64(1e-6)) * size(outward) * size(arm)).below(along);
+    let u: [L; D] = from_fn(|d| L::splat(f[d]) - surface_velocity[d]);
+    let inverse = one / gamma.max(one);
+    let radial = (inverse + inverse) * (L::dot(outward, &u) / along);
+    let stretch = one + inverse;
     let past = from_fn(|d| {
         let past = surface_velocity[d] + u[d] * stretch - arm[d] * radial;
-        if usable { past } else { surface_velocity[d] }
+        L::select(usable, past, surface_velocity[d])
     });
     (usable, past)
 }
-
-/// Obstacles that are computed side by side, each quantity in an array of its own, so that compilers make vector instructions of them where
-/// there are any. No bit depends on it: what is summed up is summed up one by one.
-const LANES: usize = if cfg!(any(target_arch = "x86_64", target_arch = "aarch64")) { 4 } else { 1 };
 
 /// Obstacles side by side; see [`Sample`]. A lane without one has the largest Gamma there is.
 #[derive(Clone, Copy, Debug)]
@@ -70,29 +68,25 @@ impl<S: Scalar, const D: usize> Group<S, D> {
         }
     }
 
-    /// Is there an obstacle in this lane?
+    /// The velocities past them, and where their reference points are usable.
     #[inline(always)]
-    fn has(&self, lane: usize) -> bool {
-        LANES == 1 || self.gamma[lane] < S::FAR
+    fn past(&self, f: &[S; D]) -> (Mask<S>, [S::Lanes; D]) {
+        let lanes = |v: &[[S; LANES]; D]| from_fn(|d| S::Lanes::new(&v[d]));
+        past(f, S::Lanes::new(&self.gamma), &lanes(&self.outward), &lanes(&self.arm), &lanes(&self.surface_velocity))
     }
 
-    /// The velocities past them, and whether their reference points are usable.
+    /// The same of the first.
     #[inline(always)]
-    fn past(&self, f: &[S; D]) -> ([bool; LANES], [[S; LANES]; D]) {
-        let mut usable = [true; LANES];
-        let mut velocity = [[S::zero(); LANES]; D];
-        for i in 0..LANES {
-            let lane = |a: &[[S; LANES]; D]| -> [S; D] { from_fn(|d| a[d][i]) };
-            let (outward, arm, surface) = (lane(&self.outward), lane(&self.arm), lane(&self.surface_velocity));
-            let past;
-            (usable[i], past) = past_one(f, self.gamma[i], &outward, &arm, &surface);
-            for d in 0..D {
-                velocity[d][i] = past[d];
-            }
-        }
-        (usable, velocity)
+    fn past_first(&self, f: &[S; D]) -> (bool, [S; D]) {
+        let first = |v: &[[S; LANES]; D]| from_fn(|d| Each([v[d][0]]));
+        let (outward, arm, surface_velocity) = (first(&self.outward), first(&self.arm), first(&self.surface_velocity));
+        let ([usable], velocity) = past(f, Each([self.gamma[0]]), &outward, &arm, &surface_velocity);
+        (usable, velocity.map(|Each([v])| v))
     }
 }
+
+/// An answer for each lane.
+type Mask<S> = <<S as Scalar>::Lanes as Lanes<S, LANES>>::Mask;
 
 /// A velocity bent round obstacles that come one after the other.
 #[derive(Debug)]
@@ -151,8 +145,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Modulation<S, D, CAP> {
                 return (mean.velocity(), mean.unusable);
             }
         };
-        let (usable, velocity) = one.past(&self.f);
-        (Vector::from_fn(|d, _| velocity[d][0]), !usable[0])
+        let (usable, velocity) = one.past_first(&self.f);
+        (velocity.into(), !usable)
     }
 }
 
@@ -225,53 +219,48 @@ impl<S: Scalar, const D: usize> DirectionalMean<S, D> {
         let mut mean = *self;
         for group in groups {
             let (usable, velocity) = group.past(&mean.f);
-            for i in 0..LANES {
-                mean.unusable |= !usable[i] && group.has(i);
-            }
-            mean.add(group, &velocity);
+            mean.add(group, usable, &velocity);
         }
         *self = mean;
     }
 
     /// Adds velocities past some obstacles.
     #[inline(always)]
-    fn add(&mut self, group: &Group<S, D>, velocity: &[[S; LANES]; D]) {
+    fn add(&mut self, group: &Group<S, D>, usable: Mask<S>, velocity: &[S::Lanes; D]) {
+        let of = <S::Lanes as Lanes<S, LANES>>::splat;
+        let (zero, one) = (of(S::zero()), of(S::one()));
+        let gamma = S::Lanes::new(&group.gamma);
+        // Is there an obstacle?
+        let has = if LANES == 1 { S::Lanes::mask(true) } else { gamma.below(of(S::FAR)) };
+        let distance = gamma - one;
+        let weight = of(self.nearest).over_where(of(self.nearest).below(distance), distance, one);
+        let weight = S::Lanes::select(has, weight, zero);
+        self.unusable |= S::Lanes::any_but(has, usable);
         // As seen along f: ahead, and across it; how much that is, in the plane with a sign, counter-clockwise.
-        let (mut ahead, mut aside) = ([S::zero(); LANES], [S::zero(); LANES]);
-        let mut across = [[S::zero(); LANES]; D];
-        let mut weight = [S::zero(); LANES];
-        for i in 0..LANES {
-            let one: [S; D] = from_fn(|d| velocity[d][i]);
-            ahead[i] = dot(&one, &self.forward.data.0[0]);
-            if D == 2 {
-                aside[i] = self.forward[0] * one[1] - self.forward[1] * one[0];
-            } else {
-                let beside: [S; D] = from_fn(|d| one[d] - self.forward[d] * ahead[i]);
-                aside[i] = S::norm(&beside);
-                for d in 0..D {
-                    across[d][i] = beside[d];
+        let forward: [S::Lanes; D] = from_fn(|d| of(self.forward[d]));
+        let ahead = S::Lanes::dot(velocity, &forward);
+        let across: [S::Lanes; D] = from_fn(|d| if D == 2 { zero } else { velocity[d] - forward[d] * ahead });
+        let aside = if D == 2 { forward[0] * velocity[1] - forward[1] * velocity[0] } else { S::Lanes::norm(&across) };
+        let (speed, angle) = S::Lanes::polar(ahead, aside);
+        let against = ahead.below(zero);
+        if S::Lanes::any_but(against, S::Lanes::mask(false)) {
+            for (ahead, aside) in ahead.numbers().into_iter().zip(aside.numbers()) {
+                if ahead < S::zero() {
+                    self.fading = self.fading.max(opposite(ahead, aside));
                 }
             }
-            weight[i] = self::weight(group.gamma[i] - S::one(), self.nearest);
         }
-        let (speed, angle) = S::polars(&ahead, &aside);
-        for i in 0..LANES {
-            if ahead[i] < S::zero() {
-                self.fading = self.fading.max(opposite(ahead[i], aside[i]));
-            }
-            let weight = if group.has(i) { weight[i] } else { S::zero() };
-            self.sum += weight;
-            self.speed += weight * speed[i];
+        add(&mut self.sum, weight);
+        add(&mut self.speed, weight * speed);
+        for d in 0..D {
+            add(&mut self.plain[d], velocity[d] * weight);
+        }
+        if D == 2 {
+            add(&mut self.kappa[0], weight * angle);
+        } else {
+            let share = weight * angle.over_where(zero.below(aside), aside, zero);
             for d in 0..D {
-                self.plain[d] += velocity[d][i] * weight;
-            }
-            if D == 2 {
-                self.kappa[0] += weight * angle[i];
-            } else if aside[i] > S::zero() {
-                let share = weight * (angle[i] / aside[i]);
-                for d in 0..D {
-                    self.kappa[d] += across[d][i] * share;
-                }
+                add(&mut self.kappa[d], across[d] * share);
             }
         }
     }
@@ -308,15 +297,18 @@ impl<S: Scalar, const D: usize> DirectionalMean<S, D> {
     }
 }
 
+/// One by one, in their order.
 #[inline(always)]
-fn dot<S: Scalar, const D: usize>(a: &[S; D], b: &[S; D]) -> S {
-    S::dot(a, b)
+fn add<S: Scalar, L: Lanes<S, N>, const N: usize>(sum: &mut S, terms: L) {
+    for term in terms.numbers() {
+        *sum += term;
+    }
 }
 
 /// |v_1| + |v_2| + ...: between one and sqrt(d) times the length, without a square root.
 #[inline(always)]
-fn size<S: Scalar, const D: usize>(v: &[S; D]) -> S {
-    v.iter().fold(S::zero(), |sum, x| sum + x.abs())
+fn size<S: Scalar, L: Lanes<S, N>, const N: usize, const D: usize>(v: &[L; D]) -> L {
+    v.iter().fold(L::splat(S::zero()), |sum, x| sum + x.abs())
 }
 
 #[cfg(test)]

@@ -37,7 +37,8 @@ fn there_is_no_jump_where_a_velocity_is_opposite_to_f_or_f_vanishes() {
         for (gamma, v) in [(2.0, other), (3.0, Vector::<f64, 3>::new(0.3, 0.1, 0.4))] {
             let zero = Vector::zeros();
             let group = Group::new(&Sample { gamma, outward: zero, arm: zero, surface_velocity: zero });
-            mean.add(&group, &from_fn(|d| from_fn(|lane| if lane == 0 { v[d] } else { 0.0 })));
+            let velocity = from_fn(|d| Lanes::new(&from_fn(|lane| if lane == 0 { v[d] } else { 0.0 })));
+            mean.add(&group, <f64 as Scalar>::Lanes::mask(true), &velocity);
         }
         mean.velocity()
     };

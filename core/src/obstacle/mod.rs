@@ -52,6 +52,8 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     leans: bool,
     /// Is it an ellipsoid with p = 1, and no wall? The usual case goes a short way.
     plain: bool,
+    /// Is Gamma the square of the gauge? Of a wall and a superellipsoid it is not.
+    quadratic: bool,
     /// Does it move, turn or grow? Does it turn?
     moves: bool,
     spins: bool,
@@ -107,7 +109,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// The first field that is out of its range, as [`ObstacleError`] states it.
     pub fn new(spec: ObstacleSpec<S, D>) -> Result<Self, ObstacleError> {
         spec.check()?;
-        let (body, unit) = spec.shape.body();
+        let (body, unit) = spec.shape.body(spec.wall);
         if !(body.sight(&spec.shape, &spec.reference.component_div(&unit)).0 < S::one()) {
             return Err(ObstacleError::Reference);
         }
@@ -122,6 +124,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             lean: nothing,
             leans: false,
             plain: !spec.wall && body.is_ellipsoid(),
+            quadratic: !spec.wall && body.power() == 1,
             moves: false,
             spins: false,
             swelling: S::zero(),
@@ -242,7 +245,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     pub(crate) fn is_near(&self, gamma: S, reach: S) -> bool {
         // The gauge is gamma^(1/2p) and changes by no more than `slimmest` a metre.
         let gauge = self.rim + reach * self.slimmest;
-        if self.plain {
+        if self.quadratic {
             return gamma <= gauge * gauge;
         }
         self.is_within(gamma, gauge - S::one())

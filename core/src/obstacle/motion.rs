@@ -4,23 +4,34 @@ use super::Obstacle;
 use crate::{Matrix, Scalar, Vector, is_zero, rotation};
 
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
+    /// Does it move, turn or grow?
+    #[inline(always)]
+    pub(crate) fn moves(&self) -> bool {
+        self.moves
+    }
+
     /// Carries pose and size on by `dt` seconds, ageing included.
     #[inline(always)]
     pub(crate) fn advance(&mut self, dt: S) {
         if !self.moves {
             return;
         }
+        let ages = self.ageing != S::zero();
         self.spec.center += self.spec.velocity * dt;
         if self.spins {
             self.spec.rotation = rotation::turned(&self.spec.rotation, &self.spec.spin, dt);
-            self.pose_changed();
         }
+        if ages {
+            self.aged += self.ageing * dt;
+        }
+        // What follows from pose and size is found once, whatever has changed.
         if self.spec.growth != S::zero() {
             self.grown += self.spec.growth * dt;
             self.rescale();
-        }
-        if self.ageing != S::zero() {
-            self.age(dt);
+        } else if ages {
+            self.inflate();
+        } else if self.spins {
+            self.pose_changed();
         }
     }
 
@@ -39,8 +50,8 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         }
     }
 
-    /// Makes the core larger by ageing, for `dt` seconds at the rate it [`ages`](Self::ages) at. The soft layer stays where it is: margin wins over
-    /// softness.
+    /// Makes the core larger by ageing alone, for `dt` seconds at the rate it [`ages`](Self::ages) at. The soft layer stays where it is: margin wins
+    /// over softness.
     pub(crate) fn age(&mut self, dt: S) {
         self.aged += self.ageing * dt;
         self.inflate();

@@ -36,18 +36,20 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.leans.then(|| self.reference() + self.lean)
     }
 
-    /// r, in a tree: from a point between the own reference point and the root's, as near to that as leaves n.r the share [`KEPT`] of what it is from
-    /// its own. Where the tree is seen from its root all members have r in common, and no notch is a pocket. `outward` is n, of any length, `own` r
+    /// How far r leans, in a tree, from the own reference point (0) to the root's (1): as far as leaves n.r the share [`KEPT`] of what it is from its
+    /// own. Where the tree is seen from its root all members have r in common, and no notch is a pocket. `outward` is n, of any length, `own` r
     /// from its own.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn arm(&self, outward: &Vector<S, D>, own: Vector<S, D>) -> Vector<S, D> {
+    #[inline(always)]
+    pub(super) fn leaning(&self, outward: &Vector<S, D>, own: &Vector<S, D>) -> S {
         let along = |v: &Vector<S, D>| S::dot(outward.as_slice(), v.as_slice());
-        let (left, falls) = (along(&own) * S::from_f64(1.0 - KEPT), along(&self.lean));
+        let (left, falls) = (along(own) * S::from_f64(1.0 - KEPT), along(&self.lean));
         if !(left > S::zero()) {
-            return own;
+            S::zero()
+        } else if falls > left {
+            left / falls
+        } else {
+            S::one()
         }
-        if falls > left { own - self.lean * (left / falls) } else { own - self.lean }
     }
 
     /// Leans towards the reference point of a tree's root (world's frame, m), or no longer towards any.

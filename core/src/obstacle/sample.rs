@@ -55,7 +55,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         }
         let mut arm = away - self.offset;
         if self.leans {
-            arm = self.arm(&shape_normal, arm);
+            arm -= self.lean * self.leaning(&shape_normal, &arm);
         }
         Sample { gamma, outward: shape_normal, arm, surface_velocity }
     }

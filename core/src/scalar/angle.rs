@@ -3,6 +3,7 @@
 //! The coefficients minimise the largest error (Remez), relative to the function for the sine and the arc tangent.
 
 use super::Scalar;
+use super::lanes::{Each, Lanes};
 
 /// A number as an unevaluated sum of a leading part and a correction: constants that have more digits than the type.
 type Pair<S> = (S, S);
@@ -51,7 +52,7 @@ impl<S: Scalar, const N: usize> ArcTangent<S, N> {
     #[inline(always)]
     pub fn polar(&self, y: S, x: S, root: impl Fn(S) -> S) -> (S, S) {
         if !BRANCHES {
-            return self.anywhere(y, x, root);
+            return self.one(y, x, root);
         }
         let across = y.abs();
         if !(across <= self.bound * x) {
@@ -68,77 +69,48 @@ impl<S: Scalar, const N: usize> ArcTangent<S, N> {
     #[cold]
     #[inline(never)]
     fn elsewhere(&self, y: S, x: S, root: impl Fn(S) -> S) -> (S, S) {
-        self.anywhere(y, x, root)
+        self.one(y, x, root)
     }
 
-    /// The lengths and angles of several points, with the bits of [`Self::polar`].
     #[inline(always)]
-    pub fn polars<const M: usize>(&self, y: &[S; M], x: &[S; M], root: impl Fn(S) -> S) -> ([S; M], [S; M]) {
-        let (mut length, mut angle) = ([S::zero(); M], [S::zero(); M]);
-        if BRANCHES {
-            for i in 0..M {
-                (length[i], angle[i]) = self.polar(y[i], x[i], &root);
-            }
-            return (length, angle);
-        }
-        let (mut under, mut squared, mut factor) = (length, length, length);
-        for i in 0..M {
-            let reduced = self.reduced(y[i], x[i]);
-            (under[i], squared[i], factor[i], angle[i]) =
-                (reduced.under, reduced.squared, reduced.factor, reduced.angle);
-        }
-        // Roots apart: with them among the rest, compilers would do all of it one by one.
-        for squared in &mut squared {
-            *squared = root(*squared);
-        }
-        for i in 0..M {
-            length[i] = under[i] * squared[i] * factor[i];
-        }
+    fn one(&self, y: S, x: S, root: impl Fn(S) -> S) -> (S, S) {
+        let (Each([length]), Each([angle])) = self.anywhere(Each([y]), Each([x]), |Each([x])| Each([root(x)]));
         (length, angle)
     }
 
+    /// The lengths and angles of points side by side: only selections, no branches.
     #[inline(always)]
-    fn anywhere(&self, y: S, x: S, root: impl Fn(S) -> S) -> (S, S) {
-        let Reduced { under, squared, factor, angle } = self.reduced(y, x);
-        (under * root(squared) * factor, angle)
-    }
-
-    #[inline(always)]
-    fn reduced(&self, y: S, x: S) -> Reduced<S> {
-        let (zero, half) = (S::zero(), S::from_f64(0.5));
+    pub fn anywhere<L: Lanes<S, M>, const M: usize>(&self, y: L, x: L, root: impl Fn(L) -> L) -> (L, L) {
+        let of = L::splat;
+        let (zero, one, half) = (of(S::zero()), of(S::one()), of(S::from_f64(0.5)));
         let (across, along) = (y.abs(), x.abs());
-        let upright = across > along;
-        let small = if upright { along } else { across };
-        let large = if upright { across } else { along };
-        let steep = small > self.bound * large;
+        let upright = along.below(across);
+        let small = L::select(upright, along, across);
+        let large = L::select(upright, across, along);
+        let steep = (of(self.bound) * large).below(small);
         // Halved, so that the sum of the largest numbers stays in range.
-        let over = if steep { small * half - large * half } else { small };
-        let under = if steep { small * half + large * half } else { large };
+        let over = L::select(steep, small * half - large * half, small);
+        let under = L::select(steep, small * half + large * half, large);
         // At the origin 0/1.
-        let (u, rest) = self.short(over, if under == zero { S::one() } else { under });
-        // Only selections from here on: in a loop over many points, compilers compute several at once.
-        let back = x < zero;
-        let rest = if upright { -rest } else { rest };
-        let rest = if back { -rest } else { rest };
-        let leading = if back { self.half } else { zero };
-        let leading = if upright { self.quarter } else { leading };
-        let odd = if back { self.three_eighths } else { self.eighth };
-        let leading = if steep { odd } else { leading };
+        let t = over / L::select(under.is_zero(), one, under);
+        let u = t * t;
+        let series = self.series.iter().rev().map(|c| of(*c)).reduce(|sum, c| sum * u + c).unwrap_or(zero);
+        let rest = t + t * (u * series);
+        let back = x.below(zero);
+        let rest = L::select(upright, -rest, rest);
+        let rest = L::select(back, -rest, rest);
+        let leading = L::select(back, of(self.half), zero);
+        let leading = L::select(upright, of(self.quarter), leading);
+        let odd = L::select(back, of(self.three_eighths), of(self.eighth));
+        let leading = L::select(steep, odd, leading);
         // Odd eighths lack less than would show.
-        let rest = if steep || self.lacking == zero { rest } else { rest + leading * self.lacking };
+        let rest =
+            if self.lacking == S::zero() { rest } else { L::select(steep, rest, rest + leading * of(self.lacking)) };
         let angle = leading + rest;
         // Halves of sum and difference are the point turned by pi/4 and sqrt(2) times as near.
-        let factor = if steep { S::from_f64(core::f64::consts::SQRT_2) } else { S::one() };
-        Reduced { under, squared: S::one() + u, factor, angle: if y < zero { -angle } else { angle } }
+        let factor = L::select(steep, of(S::from_f64(core::f64::consts::SQRT_2)), one);
+        (under * root(one + u) * factor, L::select(y.below(zero), -angle, angle))
     }
-}
-
-/// The angle of a point, and what its length is made of: under sqrt(squared) factor.
-struct Reduced<S> {
-    under: S,
-    squared: S,
-    factor: S,
-    angle: S,
 }
 
 /// What sine and cosine need.

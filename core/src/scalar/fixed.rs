@@ -1,5 +1,6 @@
 //! Fixed point for processors without a floating-point unit.
 
+use super::lanes::{Each, LANES};
 use super::{Scalar, integer, transcendental};
 use core::fmt::{Debug, Display, Formatter, Result};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -145,6 +146,7 @@ impl One for Fixed {
 }
 
 impl Scalar for Fixed {
+    type Lanes = Each<Self, LANES>;
     const EPSILON: Self = Self(I12F20::DELTA);
     const MAX: Self = Self(I12F20::MAX);
     const FAR: Self = Self::from_bits(1000 << DIGITS);

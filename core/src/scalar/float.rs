@@ -2,11 +2,12 @@
 
 use super::Scalar;
 use super::angle::{ArcTangent, SineCosine, polynomial};
+use super::lanes::{Lanes32, Lanes64};
 use core::f32::consts as single;
 use core::f64::consts as double;
 
 /// The polynomial's own error is 8e-9 of a radian.
-const ATAN_F32: ArcTangent<f32, 4> = ArcTangent {
+pub(super) const ATAN_F32: ArcTangent<f32, 4> = ArcTangent {
     bound: 0.414_213_57,
     eighth: single::FRAC_PI_4,
     quarter: single::FRAC_PI_2,
@@ -17,7 +18,7 @@ const ATAN_F32: ArcTangent<f32, 4> = ArcTangent {
 };
 
 /// The polynomial's own error is 6e-19 of a radian.
-const ATAN_F64: ArcTangent<f64, 11> = ArcTangent {
+pub(super) const ATAN_F64: ArcTangent<f64, 11> = ArcTangent {
     bound: 0.414_213_562_373_095_03,
     eighth: double::FRAC_PI_4,
     quarter: double::FRAC_PI_2,
@@ -97,8 +98,9 @@ fn exp(x: f32) -> f32 {
 }
 
 macro_rules! scalar {
-    ($float:ty, $angle:ident, $circle:ident, $($method:ident = $function:path),+) => {
+    ($float:ty, $lanes:ty, $angle:ident, $circle:ident, $($method:ident = $function:path),+) => {
         impl Scalar for $float {
+            type Lanes = $lanes;
             const EPSILON: Self = <$float>::EPSILON;
             const MAX: Self = <$float>::MAX;
             const FAR: Self = 1e15;
@@ -129,10 +131,6 @@ macro_rules! scalar {
                 $angle.polar(y, x, Scalar::sqrt)
             }
             #[inline(always)]
-            fn polars<const N: usize>(x: &[Self; N], y: &[Self; N]) -> ([Self; N], [Self; N]) {
-                $angle.polars(y, x, Scalar::sqrt)
-            }
-            #[inline(always)]
             fn rounding(size: Self) -> Self {
                 <$float>::EPSILON * size
             }
@@ -157,9 +155,9 @@ macro_rules! scalar {
     };
 }
 #[rustfmt::skip]
-scalar!(f32, ATAN_F32, CIRCLE_F32, abs = libm::fabsf, sqrt = sqrtf, exp = exp, sin = libm::sinf, cos = libm::cosf);
+scalar!(f32, Lanes32, ATAN_F32, CIRCLE_F32, abs = libm::fabsf, sqrt = sqrtf, exp = exp, sin = libm::sinf, cos = libm::cosf);
 #[rustfmt::skip]
-scalar!(f64, ATAN_F64, CIRCLE_F64, abs = libm::fabs, sqrt = libm::sqrt, exp = libm::exp, sin = libm::sin, cos = libm::cos);
+scalar!(f64, Lanes64, ATAN_F64, CIRCLE_F64, abs = libm::fabs, sqrt = libm::sqrt, exp = libm::exp, sin = libm::sin, cos = libm::cos);
 
 #[cfg(test)]
 mod tests {

@@ -7,12 +7,14 @@ mod angle;
 mod fixed;
 mod float;
 mod integer;
+pub(crate) mod lanes;
 mod transcendental;
 
 pub use self::fixed::Fixed;
 
 use core::fmt::{Debug, Display};
 use core::ops::Neg;
+use lanes::{LANES, Lanes};
 use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign};
 use num_traits::{One, Zero};
 
@@ -38,6 +40,8 @@ pub trait Scalar:
     + ClosedMulAssign
     + ClosedDivAssign
 {
+    /// Several numbers side by side: vector registers, where the machine has them.
+    type Lanes: Lanes<Self, LANES>;
     /// Distance from one to the next larger number.
     const EPSILON: Self;
     /// Largest finite number.
@@ -74,15 +78,6 @@ pub trait Scalar:
     /// Length and angle (as [`Scalar::atan2`]) of the point (x, y): for little more than the angle. Error of the length: 2e-16 (`f64`), 2e-7 (`f32`) of
     /// it, half a step and 4e-8 of it ([`Fixed`]).
     fn polar(x: Self, y: Self) -> (Self, Self);
-    /// The same of several points, with the same bits.
-    #[inline(always)]
-    fn polars<const N: usize>(x: &[Self; N], y: &[Self; N]) -> ([Self; N], [Self; N]) {
-        let (mut length, mut angle) = ([Self::zero(); N], [Self::zero(); N]);
-        for (i, (x, y)) in x.iter().zip(y).enumerate() {
-            (length[i], angle[i]) = Self::polar(*x, *y);
-        }
-        (length, angle)
-    }
     /// A bound on the rounding error of one product of terms of this size.
     fn rounding(size: Self) -> Self;
     /// Euclidean length, for components whose squares need not fit in fixed point.
@@ -109,6 +104,6 @@ pub trait Scalar:
     }
     /// x^n for a whole n >= 0, by repeated multiplication.
     fn powi(self, n: u8) -> Self {
-        (0..n).fold(Self::one(), |y, _| y * self)
+        if n == 0 { Self::one() } else { (1..n).fold(self, |y, _| y * self) }
     }
 }

@@ -19,6 +19,7 @@ mod tests;
 pub use polygon::{MAX_VERTICES, Polygon};
 
 use crate::{ObstacleError, RANGE, Scalar, Vector};
+use polygon::Pieces;
 use rounded::Rounded;
 use superellipsoid::Superellipsoid;
 pub(crate) use superellipsoid::root;
@@ -179,8 +180,8 @@ impl<S: Scalar, const D: usize> Shape<S, D> {
         crate::norm(&self.extent())
     }
 
-    /// The body of this shape, and the lengths at which its scaled coordinates are one, m.
-    pub(crate) fn body(&self) -> (Body<S, D>, Vector<S, D>) {
+    /// The body of this shape (is it a wall?), and the lengths at which its scaled coordinates are one, m.
+    pub(crate) fn body(&self, wall: bool) -> (Body<S, D>, Vector<S, D>) {
         let longest = self.extent().iter().fold(S::zero(), |m, a| m.max(*a));
         let one = |x: S| x / longest;
         let rounded = match self {
@@ -188,7 +189,9 @@ impl<S: Scalar, const D: usize> Shape<S, D> {
                 return (Body::Superellipsoid(Superellipsoid { p: *curvature }), *axes);
             }
             Self::Polygon(polygon) => {
-                return (Body::Polygon { scale: polygon.scaled().0.scale() }, Vector::from_element(longest));
+                let scaled = polygon.scaled().0;
+                let body = Body::Polygon { scale: scaled.scale(), pieces: scaled.pieces(wall) };
+                return (body, Vector::from_element(longest));
             }
             Self::Box { half, rounding } => Rounded::rounded_box(&half.map(one), one(*rounding)),
             Self::Cylinder { radius, half_length, rounding } => {
@@ -206,7 +209,7 @@ impl<S: Scalar, const D: usize> Shape<S, D> {
 pub(crate) enum Body<S: Scalar, const D: usize> {
     Superellipsoid(Superellipsoid),
     Rounded(Rounded<S, D>),
-    Polygon { scale: S },
+    Polygon { scale: S, pieces: Pieces },
 }
 
 impl<S: Scalar, const D: usize> Body<S, D> {
@@ -222,7 +225,7 @@ impl<S: Scalar, const D: usize> Body<S, D> {
     /// it grows.
     pub fn sight(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> (S, Vector<S, D>) {
         match (self, shape) {
-            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).sight(u),
+            (Self::Polygon { scale, .. }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).sight(u),
             _ => self.level(shape, u),
         }
     }
@@ -231,7 +234,7 @@ impl<S: Scalar, const D: usize> Body<S, D> {
     pub fn inner(&self, shape: &Shape<S, D>) -> S {
         match (self, shape) {
             (Self::Rounded(body), _) => body.inner(),
-            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).inner(),
+            (Self::Polygon { scale, .. }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).inner(),
             _ => S::one(),
         }
     }
@@ -242,11 +245,12 @@ impl<S: Scalar, const D: usize> Body<S, D> {
     }
 
     /// gamma(u), and the direction of its gradient.
+    #[inline(always)]
     pub fn level(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> (S, Vector<S, D>) {
         match (self, shape) {
             (Self::Superellipsoid(body), _) => body.level(u),
             (Self::Rounded(body), _) => body.level(u),
-            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).level(u),
+            (Self::Polygon { scale, pieces }, Shape::Polygon(polygon)) => polygon.in_pieces(*scale, pieces).level(u),
             _ => (S::zero(), Vector::zeros()),
         }
     }
@@ -256,7 +260,7 @@ impl<S: Scalar, const D: usize> Body<S, D> {
         match (self, shape) {
             (Self::Superellipsoid(body), _) => body.support(w),
             (Self::Rounded(body), _) => body.support(w),
-            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).support(w),
+            (Self::Polygon { scale, .. }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).support(w),
             _ => S::MAX,
         }
     }
@@ -266,7 +270,9 @@ impl<S: Scalar, const D: usize> Body<S, D> {
         match (self, shape) {
             (Self::Superellipsoid(body), _) => body.keep_out(at, keep),
             (Self::Rounded(body), _) => body.keep_out(at, keep),
-            (Self::Polygon { scale }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).keep_out(at, keep),
+            (Self::Polygon { scale, pieces }, Shape::Polygon(polygon)) => {
+                polygon.in_pieces(*scale, pieces).keep_out(at, keep);
+            }
             _ => {}
         }
     }

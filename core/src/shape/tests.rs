@@ -127,7 +127,7 @@ proptest! {
         prop_assert!((o.gamma(&surface) - 1.0).abs() < 1e-9);
         prop_assert!(inside3(&shape, &(surface * 0.999_999)) && !inside3(&shape, &(surface * 1.000_001)));
         // homogeneous: twice as far is 4^p
-        let four = 4f64.powi(i32::from(shape.body().0.power()));
+        let four = 4f64.powi(i32::from(shape.body(false).0.power()));
         prop_assert!((o.gamma(&(surface * 2.0)) / four - 1.0).abs() < 1e-9);
     }
 
@@ -265,7 +265,8 @@ proptest! {
         let polygon = Polygon::new(&corners).unwrap();
         let spec = ObstacleSpec { shape: Shape::Polygon(polygon.clone()), ..ObstacleSpec::default() };
         prop_assume!(Obstacle::new(spec.clone()).is_ok());
-        let (scaled, longest) = polygon.scaled();
+        let shape = Shape::<f64, 2>::Polygon(polygon);
+        let (body, scale) = shape.body(false);
         // Out to the nearest of the edges' lines.
         let unit: V2 = unit(towards);
         let room = |p: &V2, i: usize| {
@@ -285,8 +286,8 @@ proptest! {
                 let (from, to) = (V2::from(corners[corner]), V2::from(to));
                 let x = (from + (to - from) * libm::pow(10.0, along)) * (1.0 + libm::pow(10.0, far));
                 for seen in [zero, reference] {
-                    let (gamma, normal) = scaled.level(&(x / longest));
-                    let away = normal.dot(&((x - seen) / longest)) / libm::sqrt(gamma);
+                    let (gamma, normal) = body.level(&shape, &x.component_div(&scale));
+                    let away = normal.dot(&(x - seen).component_div(&scale)) / libm::sqrt(gamma);
                     prop_assert!(away > 0.099, "{} from {} of {:?} at {}", away, seen, corners, x);
                 }
             }

@@ -1,7 +1,7 @@
 //! The obstacles there are, in room for a fixed number of them.
 
 mod ageing;
-mod cluster;
+mod clusters;
 
 #[cfg(test)]
 mod tests;
@@ -11,7 +11,7 @@ pub use ageing::Ageing;
 use crate::modulation::Modulation;
 use crate::surroundings::Surroundings;
 use crate::{Obstacle, Scalar, Scan, Status, Vector};
-use cluster::Clusters;
+use clusters::Clusters;
 
 /// An obstacle, who it is, and how long ago it was seen.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,7 +57,7 @@ pub struct TableFull;
 #[derive(Clone, Debug)]
 pub struct Table<S: Scalar, const D: usize, const CAP: usize> {
     entries: heapless::Vec<Entry<S, D>, CAP>,
-    clusters: Clusters<S, D, CAP>,
+    clusters: Clusters<CAP>,
     scan: Scan<S, D>,
     revision: u32,
 }
@@ -79,14 +79,13 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     ///
     /// # Errors
     /// [`TableFull`]; then nothing has changed.
-    pub fn upsert(&mut self, id: u16, obstacle: Obstacle<S, D>, age: S, ageing: &Ageing<S>) -> Result<(), TableFull> {
-        self.put(id, obstacle, age, ageing)?;
-        while self.settle() {}
-        Ok(())
-    }
-
-    /// The same without looking which cores overlap.
-    fn put(&mut self, id: u16, mut obstacle: Obstacle<S, D>, age: S, ageing: &Ageing<S>) -> Result<(), TableFull> {
+    pub fn upsert(
+        &mut self,
+        id: u16,
+        mut obstacle: Obstacle<S, D>,
+        age: S,
+        ageing: &Ageing<S>,
+    ) -> Result<(), TableFull> {
         let age = age.max(S::zero()).min(ageing.hold);
         // It may come out of a table, where it was old.
         obstacle.ages(S::zero());
@@ -111,32 +110,21 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 self.entries.len().saturating_sub(1)
             }
         };
-        self.clusters.changed(index);
+        self.clusters.changed(index, &mut self.entries);
         self.revision = self.revision.wrapping_add(1);
         Ok(())
     }
 
     /// Takes an obstacle out; was it there?
     pub fn remove(&mut self, id: u16) -> bool {
-        let found = self.take(id);
-        while self.settle() {}
-        found
-    }
-
-    /// The same without finding reference points for those it overlapped.
-    fn take(&mut self, id: u16) -> bool {
         let Some(index) = self.entries.iter().position(|e| e.id == id) else {
             return false;
         };
         self.entries.swap_remove(index);
-        self.clusters.removed(index, self.entries.len());
+        let last = self.entries.len();
+        self.clusters.removed(index, last, &mut self.entries);
         self.revision = self.revision.wrapping_add(1);
         true
-    }
-
-    /// One step of the search for cores that overlap; false when nothing is left.
-    fn settle(&mut self) -> bool {
-        self.clusters.settle(&mut self.entries)
     }
 
     /// Puts a scan in the place of the one before; `age` is how many seconds ago it was taken. One without points takes it away.
@@ -233,10 +221,12 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         let (mut gamma, mut nearest) = (S::MAX, None);
         for (index, entry) in self.entries.iter().enumerate() {
             let sample = entry.obstacle.sample(x);
-            if let Some((reach, dt)) = reach {
-                // How far its surface may come in a step, and as much again for the curve of its way.
-                let fastest = sample.surface_velocity.iter().fold(S::zero(), |sum, s| sum + s.abs());
-                let reach = reach + fastest * (dt + dt);
+            if let Some((mut reach, dt)) = reach {
+                if entry.obstacle.moves() {
+                    // How far its surface may come in a step, and as much again for the curve of its way.
+                    let fastest = sample.surface_velocity.iter().fold(S::zero(), |sum, s| sum + s.abs());
+                    reach += fastest * (dt + dt);
+                }
                 if entry.obstacle.is_near(sample.gamma, reach) {
                     let _ = around.near.push((index, reach));
                 }
@@ -244,6 +234,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             if !(sample.gamma < S::FAR) {
                 continue;
             }
+            // First, so that what follows need not keep the sample at hand.
+            modulation.push(&sample);
             // The usual answer first.
             if entry.obstacle.may_be_soft(sample.gamma)
                 && deformable
@@ -255,7 +247,6 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             if sample.gamma < gamma {
                 (gamma, nearest) = (sample.gamma, Some(entry));
             }
-            modulation.push(&sample);
         }
         let (of_obstacles, mut points) = (gamma, None);
         if !self.scan.points().is_empty() {

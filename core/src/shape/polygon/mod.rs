@@ -1,6 +1,9 @@
 //! Polygons in the plane that are star-shaped about their origin: not convex, but every ray from the origin leaves them once.
 
+mod keep_out;
 mod pieces;
+
+pub(crate) use pieces::Pieces;
 
 use super::{Place, Surface};
 use crate::{ObstacleError, RANGE, Scalar, Vector};
@@ -110,6 +113,11 @@ impl<S: Scalar> Polygon<S> {
     pub(super) fn at_scale(&self, scale: S) -> Scaled<'_, S> {
         Scaled { vertices: &self.vertices, scale }
     }
+
+    /// And with the pieces.
+    pub(super) fn in_pieces<'a>(&'a self, scale: S, pieces: &'a Pieces) -> InPieces<'a, S> {
+        InPieces { polygon: self.at_scale(scale), pieces }
+    }
 }
 
 impl<S: Scalar> Scaled<'_, S> {
@@ -126,6 +134,11 @@ impl<S: Scalar> Scaled<'_, S> {
         });
         let share = most / S::from_f64(SIGHT);
         (share * share, vector(steepest))
+    }
+
+    /// The convex pieces, of a wall those of all that is outside.
+    pub fn pieces(&self, wall: bool) -> Pieces {
+        Pieces::new(self.edges(), wall)
     }
 
     /// The largest w.u of all u inside.
@@ -182,22 +195,28 @@ impl<S: Scalar> Scaled<'_, S> {
     }
 }
 
-impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
+/// A polygon along with its convex pieces.
+pub(super) struct InPieces<'a, S> {
+    polygon: Scaled<'a, S>,
+    pieces: &'a Pieces,
+}
+
+impl<S: Scalar, const D: usize> Surface<S, D> for InPieces<'_, S> {
     fn level(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
-        let u = plane(u);
-        let Some((end, edge)) = self.leaving(u).and_then(|end| Some((end, self.ending(end)?))) else {
+        let (u, polygon) = (plane(u), &self.polygon);
+        let Some((end, edge)) = polygon.leaving(u).and_then(|end| Some((end, polygon.ending(end)?))) else {
             return (S::zero(), Vector::zeros());
         };
         let gauge = dot(edge.normal, u);
         let beta = cross(edge.from, u) / cross(edge.from, edge.to);
         // Where on the edge, 0 to 1.
         let along = beta / gauge;
-        let corners = [(along, self.before(end), edge.to), (S::one() - along, self.after(end), edge.from)];
+        let corners = [(along, polygon.before(end), edge.to), (S::one() - along, polygon.after(end), edge.from)];
         let mut normal = edge.normal;
         for (away, neighbour, opposite) in corners {
             // Far from both corners no neighbour counts.
             if away < S::from_f64(BLEND)
-                && let Some(neighbour) = self.ending(neighbour)
+                && let Some(neighbour) = polygon.ending(neighbour)
             {
                 let share = neighbour.share(away, opposite);
                 let own = S::one() - share;
@@ -208,7 +227,7 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Scaled<'_, S> {
     }
 
     fn keep_out(&self, at: &Place<'_, S, D>, keep: impl FnMut(Vector<S, D>, S)) {
-        pieces::keep_out(self.edges(), at, keep);
+        keep_out::keep_out(self.polygon.pairs(), self.pieces, at, keep);
     }
 }
 

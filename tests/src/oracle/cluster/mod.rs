@@ -23,8 +23,8 @@ pub struct OracleCluster {
     pub links: Vec<(usize, usize)>,
     /// Whether all of them have a point in common that is in sight of every polygon; never with a wall.
     pub common: Sharing,
-    /// Whether one of them is a wall.
-    pub wall: Option<usize>,
+    /// Those of them that are walls; they overlap each other nowhere, but the same obstacle may stick into several.
+    pub walls: Vec<usize>,
 }
 
 impl OracleCluster {
@@ -38,18 +38,18 @@ impl OracleCluster {
         self.links.iter().filter(|(a, b)| *a == member || *b == member).count()
     }
 
-    /// The members that may be the root of a tree: the wall, or those with most neighbours.
-    pub fn roots(&self) -> Vec<usize> {
-        if let Some(wall) = self.wall {
-            return vec![wall];
+    /// Where a tree may begin: at all walls at once, or at one of those with most neighbours.
+    pub fn roots(&self) -> Vec<Vec<usize>> {
+        if !self.walls.is_empty() {
+            return vec![self.walls.clone()];
         }
         let most = self.members.iter().map(|m| self.neighbours(*m)).max().unwrap_or(0);
-        self.members.iter().copied().filter(|m| self.neighbours(*m) == most).collect()
+        self.members.iter().copied().filter(|m| self.neighbours(*m) == most).map(|m| vec![m]).collect()
     }
 
-    /// Everyone's parent in the tree from a root; the root and whoever cannot be reached have none.
-    pub fn parents(&self, root: usize) -> Vec<(usize, Option<usize>)> {
-        let mut found: Vec<(usize, Option<usize>)> = vec![(root, None)];
+    /// Everyone's parent in the tree from these roots; they and whoever cannot be reached have none.
+    pub fn parents(&self, roots: &[usize]) -> Vec<(usize, Option<usize>)> {
+        let mut found: Vec<(usize, Option<usize>)> = roots.iter().map(|root| (*root, None)).collect();
         let mut next = 0;
         while let Some((own, _)) = found.get(next).copied() {
             for (a, b) in &self.links {
@@ -77,7 +77,7 @@ impl OracleCluster {
         let before = bodies(own).map_err(|e| e.to_string())?;
         let bodies = bodies(scene).map_err(|e| e.to_string())?;
         let inside = |point: &DVector<f64>, n: usize| bodies[n].sight(point) <= 1.0 + 1e-9;
-        let shared = self.wall.is_none() && {
+        let shared = self.walls.is_empty() && {
             let first = bodies[self.members[0]].reference();
             let same = |n: &usize| length(&(bodies[*n].reference() - &first)) < 1e-9 * (1.0 + length(&first));
             self.members.iter().all(same)
@@ -94,13 +94,13 @@ impl OracleCluster {
         }
         let tree = self.is_tree();
         let mut complaints = Vec::new();
-        for root in self.roots() {
-            if scene.obstacles[root].reference != own.obstacles[root].reference {
-                complaints.push(format!("root {root} has not kept its reference point"));
+        for roots in self.roots() {
+            if roots.iter().any(|root| scene.obstacles[*root].reference != own.obstacles[*root].reference) {
+                complaints.push(format!("one of the roots {roots:?} has not kept its reference point"));
                 continue;
             }
-            let hub = self.wall.is_none().then(|| bodies[root].reference());
-            let wrong = self.parents(root).into_iter().find_map(|(child, parent)| {
+            let hub = self.walls.is_empty().then(|| bodies[roots[0]].reference());
+            let wrong = self.parents(&roots).into_iter().find_map(|(child, parent)| {
                 let parent = parent?;
                 let leans = match (&hub, bodies[child].hub()) {
                     (Some(hub), Some(seen)) => length(&(hub - seen)) < 1e-9 * (1.0 + length(hub)),
@@ -109,7 +109,7 @@ impl OracleCluster {
                     (None, seen) => seen.is_none(),
                 };
                 if !leans {
-                    return Some(format!("{child} does not lean towards root {root}"));
+                    return Some(format!("{child} does not lean towards root {roots:?}"));
                 }
                 let with = |other: usize| {
                     child::check(&bodies[child], &before[child], &bodies[other], &before[other].reference())
@@ -118,7 +118,7 @@ impl OracleCluster {
                 let around = || self.members.iter().any(|other| self.linked(child, *other) && with(*other).is_ok());
                 match with(parent) {
                     Err(_) if !tree && around() => None,
-                    Err(complaint) => Some(format!("from root {root}, {child} below {parent}: {complaint}")),
+                    Err(complaint) => Some(format!("from root {roots:?}, {child} below {parent}: {complaint}")),
                     Ok(()) => None,
                 }
             });
@@ -171,6 +171,10 @@ pub fn clusters(scene: &OracleScene) -> Result<Option<Vec<OracleCluster>>, Oracl
     let mut links = Vec::new();
     for a in 0..bodies.len() {
         for b in a + 1..bodies.len() {
+            // Beyond their free spaces walls always meet; that is nowhere anybody is.
+            if bodies[a].wall && bodies[b].wall {
+                continue;
+            }
             match pairwise(&bodies[a], &bodies[b]) {
                 Sharing::Apart => {}
                 Sharing::Unclear => return Ok(None),
@@ -192,13 +196,13 @@ pub fn clusters(scene: &OracleScene) -> Result<Option<Vec<OracleCluster>>, Oracl
         if members.len() < 2 {
             continue;
         }
-        let wall = members.iter().copied().find(|n| bodies[*n].wall);
+        let walls: Vec<usize> = members.iter().copied().filter(|n| bodies[*n].wall).collect();
         let all: Vec<&Body> = members.iter().map(|n| &bodies[*n]).collect();
         found.push(OracleCluster {
-            common: if wall.is_some() { Sharing::Apart } else { in_sight(&all) },
+            common: if !walls.is_empty() { Sharing::Apart } else { in_sight(&all) },
             links: links.iter().copied().filter(|(a, _)| group[*a] == name).collect(),
             members,
-            wall,
+            walls,
         });
     }
     Ok(Some(found))

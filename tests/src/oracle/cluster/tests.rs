@@ -60,14 +60,34 @@ fn a_wall_is_overlapped_by_what_sticks_out() {
 }
 
 #[test]
+fn all_walls_of_a_tree_are_its_roots() {
+    let ring = |x: f64| OracleObstacle::still(&[x, 0.0], &[3.0, 3.0]).inside_out();
+    assert_eq!(clusters(&scene(vec![ring(0.0), ring(0.2)])).unwrap(), Some(vec![]));
+    let own = scene(vec![ring(0.0), ring(0.2), disc(-2.5, 0.0)]);
+    let found = clusters(&own).unwrap().unwrap();
+    let tree = &found[0];
+    assert_eq!((found.len(), &tree.links, &tree.walls), (1, &vec![(0, 2), (1, 2)], &vec![0, 1]));
+    assert_eq!(tree.roots(), vec![vec![0, 1]]);
+    assert_eq!(tree.parents(&[0, 1]), vec![(0, None), (1, None), (2, Some(0))]);
+    let with = |wall: [f64; 2], ball: [f64; 2]| {
+        let mut scene = own.clone();
+        (scene.obstacles[1].reference, scene.obstacles[2].reference) = (wall.to_vec(), ball.to_vec());
+        tree.check(&own, &scene)
+    };
+    assert_eq!(with([0.0, 0.0], [-0.75, 0.0]), Ok(()));
+    assert!(with([0.0, 0.0], [0.0, 0.0]).is_err());
+    assert!(with([-3.3, 0.0], [-0.75, 0.0]).is_err());
+}
+
+#[test]
 fn groups_links_and_roots() {
     let chain = scene(vec![disc(0.0, 0.0), disc(9.0, 0.0), disc(3.4, 0.0), disc(1.7, 0.0)]);
     let found = clusters(&chain).unwrap().unwrap();
     assert_eq!(found.len(), 1);
     let tree = &found[0];
     assert_eq!((&tree.members, &tree.links), (&vec![0, 2, 3], &vec![(0, 3), (2, 3)]));
-    assert!(tree.is_tree() && tree.roots() == vec![3] && tree.common == Sharing::Apart);
-    assert_eq!(tree.parents(3), vec![(3, None), (0, Some(3)), (2, Some(3))]);
+    assert!(tree.is_tree() && tree.roots() == vec![vec![3]] && tree.common == Sharing::Apart);
+    assert_eq!(tree.parents(&[3]), vec![(3, None), (0, Some(3)), (2, Some(3))]);
     let three = clusters(&scene(vec![disc(0.0, 0.0), disc(1.0, 0.0), disc(0.5, 0.8)])).unwrap().unwrap();
     assert!(three[0].common == Sharing::Common && !three[0].is_tree());
     assert_eq!(clusters(&scene(vec![disc(0.0, 0.0), disc(2.0, 0.0)])).unwrap(), None);
