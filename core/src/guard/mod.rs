@@ -1,7 +1,8 @@
 //! The last stage: whatever was asked for, the next sample is outside every hard core.
 //!
 //! For each hard core near enough to be reached, as it will be at the next sample (pose, growth and all), there is a half-space that holds the
-//! whole of it on its other side. With n its normal, gap its distance from the robot at x, and room what is left of that beyond a skin for rounding,
+//! whole of it on its other side. With n its normal, gap its distance from the robot at x (of a large body less what rounding does to that), and room what
+//! is left beyond a skin,
 //!
 //! ```text
 //! n.u >= -alpha room/dt   (room > 0)
@@ -105,9 +106,10 @@ impl<S: Scalar> Guard<S> {
         around: &Surroundings<S, D, CAP>,
         all: &mut HalfSpaces<S, D>,
     ) {
+        let skin = view.skin;
         let rate = S::one() / dt;
         let gone = view.at - view.x;
-        let mut keep = |normal: Vector<S, D>, gap: S, skin: S| {
+        let mut keep = |normal: Vector<S, D>, gap: S| {
             let room = gap - skin;
             let share = if room > S::zero() {
                 view.approach
@@ -123,14 +125,13 @@ impl<S: Scalar> Guard<S> {
             if let Some(obstacle) = table.at(*index) {
                 let reach = *reach + view.step;
                 let from = Outlook { at: view.at, wish: &wish, step: view.step, reach, share: view.approach };
-                let skin = view.skin.max(obstacle.blur());
-                obstacle.keep_out(&from, |normal, gap| keep(normal, gap, skin));
+                obstacle.keep_out(&from, &mut keep);
             }
         }
         if !table.scan().points().is_empty() {
-            let skin = view.skin.max(blur(table.scan().radius()));
-            let reach = self.reach(view.x, speed, dt) + view.step + skin;
-            table.scan().keep_out(view.at, reach, |normal, gap| keep(normal, gap, skin));
+            let blur = blur(table.scan().radius());
+            let reach = self.reach(view.x, speed, dt) + view.step + blur;
+            table.scan().keep_out(view.at, reach, |normal, gap| keep(normal, gap - blur));
         }
     }
 }
@@ -145,7 +146,7 @@ struct View<'a, S: Scalar, const D: usize> {
     step: S,
     /// The share of the distance that may be used up.
     approach: S,
-    /// What surfaces are kept away at least, m: those of large bodies farther.
+    /// What surfaces are kept away, m.
     skin: S,
 }
 
@@ -199,10 +200,12 @@ fn skin<S: Scalar, const D: usize>(x: &Vector<S, D>) -> S {
     (S::EPSILON * S::from_f64(16.0) * largest).max(S::from_f64(SKIN))
 }
 
-/// What rounding may do to the distance from a body's surface, m, for its size, m. Scaled coordinates are in units of that; in fixed point (where the
-/// square of epsilon is zero) the unit's reciprocal is as coarse as all other numbers, and what it is wrong by is so many times a metre squared.
+/// By how much the surface of a body of this size, m, counts as nearer, m: what rounding may do to the distance from it, as far as that is beyond [`SKIN`]. Scaled
+/// coordinates are in units of that size; in fixed point (where the square of epsilon is zero) the unit's reciprocal is as coarse as all other numbers, and
+/// what it is wrong by is so many times a metre squared.
 pub(crate) fn blur<S: Scalar>(size: S) -> S {
     let eight = S::EPSILON * S::from_f64(8.0) * size;
     let two = S::one() + S::one();
-    if S::EPSILON * S::EPSILON > S::zero() { eight * two } else { eight * size.max(two) }
+    let all = if S::EPSILON * S::EPSILON > S::zero() { eight * two } else { eight * size.max(two) };
+    (all - S::from_f64(SKIN)).max(S::zero())
 }

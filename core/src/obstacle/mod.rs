@@ -61,7 +61,7 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     swelling: S,
     /// 1/radius of the largest ball inside, 1/m.
     slimmest: S,
-    /// What rounding may do to a distance from the surface, m; and the gauge so far out.
+    /// By how much the surface counts as nearer to the guard for the body's size, m; and the gauge so far out.
     blur: S,
     rim: S,
     /// The lengths at which hard scaled coordinates are one before ageing, m, and how much longer each becomes for each metre of it.
@@ -218,7 +218,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             let length = norm(&normal);
             if length > S::zero() {
                 let inverse = S::one() / length;
-                keep(times(&self.spec.rotation, &(normal * inverse)), slack * inverse);
+                keep(times(&self.spec.rotation, &(normal * inverse)), slack * inverse - self.blur);
             }
         });
     }
@@ -237,7 +237,10 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let shortest = one / self.slimmest;
         let normal = t.zip_map(&self.hard, |t, inverse| t * (inverse * shortest));
         let inverse = one / norm(&normal);
-        keep(times(&self.spec.rotation, &(normal * inverse)), size * (largest * size - one) * shortest * inverse);
+        keep(
+            times(&self.spec.rotation, &(normal * inverse)),
+            size * (largest * size - one) * shortest * inverse - self.blur,
+        );
     }
 
     /// May the hard surface be within `reach` (m) of a point with this Gamma?
@@ -262,11 +265,6 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         } else {
             gamma <= ((one + change) * (one + change)).powi(self.body.power())
         }
-    }
-
-    /// What rounding may do to a distance from the hard surface because of the body's size, m.
-    pub(crate) fn blur(&self) -> S {
-        self.blur
     }
 
     /// 1/(eta L), with growth and ageing, along the axes of the obstacle's frame, 1/m: of an ellipsoid 1/a.

@@ -188,7 +188,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 entry.obstacle.hold();
                 continue;
             }
-            entry.obstacle.advance(dt);
+            entry.obstacle.advance_and_age(dt);
             status |= Status::EXTRAPOLATED;
             entry.age += dt;
             // In case it has changed: from the next step on, so that what was seen coming is what came.

@@ -78,7 +78,7 @@ impl<const D: usize> Asked<D> {
                     let size = corners.iter().map(|c| (c - numbers(&o.spec().center)).norm()).fold(0.0, f64::max);
                     // In fixed point epsilon has no square.
                     let unit = if S::EPSILON * S::EPSILON > S::zero() { 2.0 } else { size.max(2.0) };
-                    let skin = skin.max(8.0 * eps * size * unit);
+                    let skin = skin + (8.0 * eps * size * unit - 1.0 / 65536.0).max(0.0);
                     may_stand &= !inside && share * d > 2.0 * step + skin + rounding.distance;
                     more |= inside || (share * d - 2.0 * step - skin) * alpha < step;
                 }
