@@ -246,6 +246,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
     /// Changes the settings; [`Settings::check`] those that come from outside.
     pub fn set_settings(&mut self, settings: Settings<S>) {
         self.settings = settings;
+        self.table.rules_changed(&self.settings.ageing);
     }
 
     /// The nominal motion, and where its attractor is.

@@ -162,6 +162,8 @@ fn are_apart<S: Scalar, const D: usize>(
     let extent = match one {
         // It may have notches.
         Inside::Core(o) if matches!(o.spec().shape, Shape::Polygon(_)) => o.support(normal),
+        // Of a Gamma so large its root is not told, or it is no number any more.
+        Inside::Core(o) | Inside::Sight(o) if !(gamma < S::FAR) => o.support(normal),
         // The gauge is convex, and as steep along the whole ray.
         _ => along(x - own.spec().center) / root(gamma, own.power()),
     };
@@ -256,4 +258,45 @@ fn solve<S: Scalar, const D: usize>(mut m: Matrix<S, D>, mut right: Vector<S, D>
         right[k] = (right[k] - known) / m[(k, k)];
     }
     right
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Fixed, ObstacleSpec};
+
+    /// Needles with flat ends across a ball, looked at from as far as there are numbers.
+    fn overlapping_ones_are_never_apart<S: Scalar>() {
+        let vector = |x: f64, y: f64| Vector::<S, 2>::new(S::from_f64(x), S::from_f64(y));
+        let mut beyond = 0;
+        for curvature in [1, 3, 8] {
+            let shape = Shape::Ellipsoid { axes: vector(0.002, 1.0), curvature };
+            let needle = Obstacle::new(ObstacleSpec { shape, ..ObstacleSpec::default() }).unwrap();
+            let ball = ObstacleSpec { shape: Shape::ellipsoid(vector(0.5, 0.5)), ..ObstacleSpec::default() };
+            let ball = Obstacle::new(ObstacleSpec { center: vector(0.5003, 0.8), ..ball }).unwrap();
+            let common = vector(0.0008, 0.8);
+            assert!(needle.gamma(&common) < S::one() && ball.gamma(&common) < S::one());
+            let members = [Inside::Core(&needle), Inside::Core(&ball)];
+            for (i, distance) in (0..400).flat_map(|i| [(i, 0.05), (i, 1.0), (i, 30.0), (i, 900.0)]) {
+                let angle = f64::from(i) * 0.0157;
+                let x = vector(distance * angle.cos(), distance * angle.sin());
+                for one in &members {
+                    let (gamma, slope) = one.look(&x);
+                    let (length, away) = unit(&one.obstacle().outward(&slope));
+                    if gamma >= S::one() && length > S::zero() {
+                        beyond += u32::from(!(gamma < S::FAR));
+                        assert!(!are_apart(&members, one, &x, gamma, &away), "p = {curvature}, from {x}: {gamma}");
+                    }
+                }
+            }
+        }
+        assert!(beyond > 0, "no Gamma was too large");
+    }
+
+    #[test]
+    fn overlapping_ones_are_never_apart_in_any_number() {
+        overlapping_ones_are_never_apart::<f64>();
+        overlapping_ones_are_never_apart::<f32>();
+        overlapping_ones_are_never_apart::<Fixed>();
+    }
 }

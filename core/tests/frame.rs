@@ -116,7 +116,7 @@ impl<const D: usize> Frame<'_, D> {
 fn parts<const D: usize>(r: &mut Random) -> Parts<D> {
     let mut obstacles: Vec<_> = some::<f64, D>(r, &MOVING).iter().map(|o| o.spec().clone()).collect();
     if r.random_bool(0.2) {
-        obstacles.push(wall::<f64, D>(r).spec().clone());
+        obstacles.push(wall::<f64, D>(r, false).spec().clone());
     }
     let scan = if r.random_bool(0.2) { (0..10).map(|_| vector(&within(r, 0.6))).collect() } else { Vec::new() };
     let components = if r.random_bool(0.5) { components(r) } else { Vec::new() };

@@ -119,7 +119,8 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
         let mut velocity = Vector::<S, D>::zeros();
         for (depth, c) in depths.iter().zip(&self.components) {
             let exponent = (least - *depth) * S::from_f64(32.0);
-            // e^-40 of the sum is less than the sum's rounding, also in f64.
+            // A weight below e^-40 of the largest is less than the rounding of their sum, also in f64: the velocity misses that share of what this
+            // component alone would have.
             if exponent < S::from_f64(-40.0) {
                 continue;
             }

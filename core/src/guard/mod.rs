@@ -1,10 +1,13 @@
 //! The last stage: whatever was asked for, the next sample is outside every hard core.
 //!
 //! For each hard core near enough to be reached, as it will be at the next sample (pose, growth and all), there is a half-space that holds the
-//! whole of it on its other side. With n its normal and gap its distance from the robot at x,
+//! whole of it on its other side. With n its normal, gap its distance from the robot at x (of a large body less what rounding does to that), and room what
+//! is left beyond a skin,
 //!
 //! ```text
-//! n.u >= -alpha gap/dt   (gap >= 0),    n.u >= -gap/dt   (gap < 0: it will be here, so out of its way)
+//! n.u >= -alpha room/dt   (room > 0)
+//! n.u >= -0.06 room/dt    (room <= 0, in the outer half of the skin)
+//! n.u >= -room/dt         (nearer, or behind: it will be here, so out of its way)
 //! ```
 //!
 //! keeps x + u dt out of a convex core exactly, not only in the limit dt -> 0: the half-space is that of the next sample, so no velocity of
@@ -13,7 +16,7 @@
 //! as seen from where the least violation leads are tried, without alpha. Where that fails too, the velocity that violates the worst inequality
 //! least is driven, and the status says so.
 //!
-//! What is exact: ellipsoids, boxes, cylinders, capsules, points of a scan, and polygons, by their convex pieces. A wall's free space is
+//! What is exact: superellipsoids, boxes, cylinders, capsules, points of a scan, and polygons, by their convex pieces. A wall's free space is
 //! convex but for polygons; a half-space would let a step end outside of its curve, so it is moved inwards by what the curve can bend within
 //! one step.
 
@@ -126,7 +129,9 @@ impl<S: Scalar> Guard<S> {
             }
         }
         if !table.scan().points().is_empty() {
-            table.scan().keep_out(view.at, self.reach(view.x, speed, dt) + view.step, &mut keep);
+            let blur = blur(table.scan().radius());
+            let reach = self.reach(view.x, speed, dt) + view.step + blur;
+            table.scan().keep_out(view.at, reach, |normal, gap| keep(normal, gap - blur));
         }
     }
 }
@@ -193,4 +198,14 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
 fn skin<S: Scalar, const D: usize>(x: &Vector<S, D>) -> S {
     let largest = x.iter().fold(S::one(), |m, x| m.max(x.abs()));
     (S::EPSILON * S::from_f64(16.0) * largest).max(S::from_f64(SKIN))
+}
+
+/// By how much the surface of a body of this size, m, counts as nearer, m: what rounding may do to the distance from it, as far as that is beyond [`SKIN`]. Scaled
+/// coordinates are in units of that size; in fixed point (where the square of epsilon is zero) the unit's reciprocal is as coarse as all other numbers, and
+/// what it is wrong by is so many times a metre squared.
+pub(crate) fn blur<S: Scalar>(size: S) -> S {
+    let eight = S::EPSILON * S::from_f64(8.0) * size;
+    let two = S::one() + S::one();
+    let all = if S::EPSILON * S::EPSILON > S::zero() { eight * two } else { eight * size.max(two) };
+    (all - S::from_f64(SKIN)).max(S::zero())
 }

@@ -21,8 +21,8 @@ use crate::{Scalar, Vector, norm, unit};
 /// ```
 ///
 /// which is E D E^-1 with E = [r/|r|, tangents of g] and D = diag(1 - 1/G, 1 + 1/G, ...): u minus its part along r (split by the tangent
-/// plane) is tangential and stretched, the part along r is compressed. Neither g nor r need be of unit length. `None` where g.r is not
-/// positive.
+/// plane) is tangential and stretched, the part along r is compressed. Neither g nor r need be of unit length. Where g.r is not positive,
+/// or so small that it may be rounding, there is no such split: then the answer is false, and s.
 #[inline(always)]
 fn past<S: Scalar, L: Lanes<S, N>, const N: usize, const D: usize>(
     f: &[S; D],

@@ -61,6 +61,9 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     swelling: S,
     /// 1/radius of the largest ball inside, 1/m.
     slimmest: S,
+    /// By how much the surface counts as nearer to the guard for the body's size, m; and the gauge so far out.
+    blur: S,
+    rim: S,
     /// The lengths at which hard scaled coordinates are one before ageing, m, and how much longer each becomes for each metre of it.
     young: Vector<S, D>,
     per_metre: Vector<S, D>,
@@ -126,6 +129,8 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             spins: false,
             swelling: S::zero(),
             slimmest: S::one(),
+            blur: S::zero(),
+            rim: S::one(),
             young: nothing,
             per_metre: unit.component_div(&extent),
             unit,
@@ -213,7 +218,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             let length = norm(&normal);
             if length > S::zero() {
                 let inverse = S::one() / length;
-                keep(times(&self.spec.rotation, &(normal * inverse)), slack * inverse);
+                keep(times(&self.spec.rotation, &(normal * inverse)), slack * inverse - self.blur);
             }
         });
     }
@@ -232,19 +237,21 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let shortest = one / self.slimmest;
         let normal = t.zip_map(&self.hard, |t, inverse| t * (inverse * shortest));
         let inverse = one / norm(&normal);
-        keep(times(&self.spec.rotation, &(normal * inverse)), size * (largest * size - one) * shortest * inverse);
+        keep(
+            times(&self.spec.rotation, &(normal * inverse)),
+            size * (largest * size - one) * shortest * inverse - self.blur,
+        );
     }
 
     /// May the hard surface be within `reach` (m) of a point with this Gamma?
     #[inline(always)]
     pub(crate) fn is_near(&self, gamma: S, reach: S) -> bool {
         // The gauge is gamma^(1/2p) and changes by no more than `slimmest` a metre.
-        let change = reach * self.slimmest;
+        let gauge = self.rim + reach * self.slimmest;
         if self.quadratic {
-            let gauge = S::one() + change;
             return gamma <= gauge * gauge;
         }
-        self.is_within(gamma, change)
+        self.is_within(gamma, gauge - S::one())
     }
 
     /// May the gauge be 1 where it differs by `change`, at most, from that of a point with this Gamma?

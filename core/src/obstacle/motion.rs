@@ -10,19 +10,24 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.moves
     }
 
-    /// Carries pose and size on by `dt` seconds.
+    /// Carries pose and size on by `dt` seconds, but for ageing.
     #[inline(always)]
     pub(crate) fn advance(&mut self, dt: S) {
-        self.advance_and_age(dt, S::zero());
+        self.carry_on(dt, S::zero());
     }
 
-    /// The same, and makes the core larger by ageing, for this time at `rate` m/s. The soft layer stays where it is: margin wins over softness.
+    /// The same, and makes the core larger by ageing, at the rate it [`ages`](Self::ages) at. The soft layer stays where it is: margin wins over softness.
     #[inline(always)]
-    pub(crate) fn advance_and_age(&mut self, dt: S, rate: S) {
-        let ages = rate != S::zero();
-        if !(self.moves || ages) {
+    pub(crate) fn advance_and_age(&mut self, dt: S) {
+        self.carry_on(dt, self.ageing);
+    }
+
+    #[inline(always)]
+    fn carry_on(&mut self, dt: S, rate: S) {
+        if !self.moves {
             return;
         }
+        let ages = rate != S::zero();
         self.spec.center += self.spec.velocity * dt;
         if self.spins {
             self.spec.rotation = rotation::turned(&self.spec.rotation, &self.spec.spin, dt);
@@ -56,13 +61,13 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         }
     }
 
-    /// Makes the core larger by ageing alone.
-    pub(crate) fn age(&mut self, rate: S, dt: S) {
-        self.aged += rate * dt;
+    /// Makes the core larger by ageing alone, for `dt` seconds.
+    pub(crate) fn age(&mut self, dt: S) {
+        self.aged += self.ageing * dt;
         self.inflate();
     }
 
-    /// From now on it grows by ageing, at `rate` m/s.
+    /// From now on it grows by ageing, at `rate` m/s: what its surface velocity says, and what [`advance_and_age`](Self::advance_and_age) does.
     pub(crate) fn ages(&mut self, rate: S) {
         if rate != self.ageing {
             self.ageing = rate;
@@ -107,11 +112,23 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     fn inflate(&mut self) {
         let (aged, one) = (self.aged, S::one());
         let wall = self.spec.wall;
-        self.hard = self.young.zip_map(&self.per_metre, |l, more| {
-            one / if wall { (l - aged * more).max(l * S::from_f64(0.1)) } else { l + aged * more }
+        let lengths = self.young.zip_map(&self.per_metre, |l, more| {
+            if wall { (l - aged * more).max(l * S::from_f64(0.1)) } else { l + aged * more }
         });
+        self.hard = lengths.map(|l| one / l);
         self.slimmest = self.hard.iter().fold(S::zero(), |m, x| m.max(*x)) * self.inner;
+        // No body below 1 m is large enough for that, in any number.
+        if self.hard.iter().any(|inverse| *inverse < one) || self.blur > S::zero() {
+            self.blur_changed(&lengths);
+        }
         self.pose_changed();
+    }
+
+    /// How much nearer the surface counts.
+    #[inline(never)]
+    fn blur_changed(&mut self, lengths: &Vector<S, D>) {
+        self.blur = crate::guard::blur(lengths.iter().fold(S::zero(), |m, l| m.max(*l)));
+        self.rim = S::one() + self.blur * self.slimmest;
     }
 
     /// How the surface moves, and whether anything does.

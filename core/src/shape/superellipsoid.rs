@@ -96,7 +96,13 @@ pub(crate) fn root<S: Scalar>(gamma: S, p: u8) -> S {
         return target;
     }
     let powers = (0..p).fold(S::zero(), |sum, _| sum + S::one());
+    // From sqrt(gamma) itself a large one would take hundreds of steps, each a share of 1/p: so from its root of the power of two next below p.
     let mut y = target.max(S::one());
+    let mut power = p;
+    while power > 1 {
+        y = y.sqrt();
+        power /= 2;
+    }
     for _ in 0..60 {
         let next = y - (y - target / y.powi(p - 1)) / powers;
         if !(next < y) {

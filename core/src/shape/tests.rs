@@ -199,7 +199,8 @@ proptest! {
         let margin = V2::repeat(margin);
         let mut larger = Obstacle::new(ObstacleSpec { shape, margin, growth, ..ObstacleSpec::default() }).unwrap();
         larger.advance(0.1);
-        larger.age(0.1, 0.1);
+        larger.ages(0.1);
+        larger.age(0.1);
         prop_assert!(larger.gamma(&plain.surface(&unit(direction))) <= 1.0 + 1e-9);
     }
 

@@ -87,12 +87,14 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         ageing: &Ageing<S>,
     ) -> Result<(), TableFull> {
         let age = age.max(S::zero()).min(ageing.hold);
+        // It may come out of a table, where it was old.
+        obstacle.ages(S::zero());
         if age > S::zero() {
             obstacle.carry(age);
         }
         if age >= ageing.time_to_live {
             obstacle.ages(ageing.growth);
-            obstacle.age(ageing.growth, age - ageing.time_to_live);
+            obstacle.age(age - ageing.time_to_live);
         }
         if age >= ageing.hold {
             obstacle.hold();
@@ -186,16 +188,22 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 entry.obstacle.hold();
                 continue;
             }
-            if entry.age >= ageing.time_to_live {
-                status |= Status::EXTRAPOLATED;
-                entry.obstacle.advance_and_age(dt, ageing.growth);
-            } else {
-                entry.obstacle.advance(dt);
-            }
+            entry.obstacle.advance_and_age(dt);
+            status |= Status::EXTRAPOLATED;
             entry.age += dt;
+            // In case it has changed: from the next step on, so that what was seen coming is what came.
+            entry.obstacle.ages(ageing.growth);
         }
         self.scan.advance(dt, ageing);
         status
+    }
+
+    /// Other rules for ageing are in force from now on: those that are old say at once how fast they grow.
+    pub(crate) fn rules_changed(&mut self, ageing: &Ageing<S>) {
+        for entry in &mut self.entries {
+            let grows = entry.age >= ageing.time_to_live && entry.age < ageing.hold;
+            entry.obstacle.ages(if grows { ageing.growth } else { S::zero() });
+        }
     }
 
     /// How all obstacles look from x, into `around`, which is new: its velocity is bent round them all. With `deformable` false every soft layer is ignored. `reach` is how far

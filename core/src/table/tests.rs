@@ -76,3 +76,26 @@ fn every_change_has_its_revision() {
     table.clear();
     assert_eq!(table.revision(), 3);
 }
+
+#[test]
+fn a_surface_comes_as_fast_as_it_says_when_the_rules_of_ageing_change() {
+    let rules = [(0.1, 0.02), (0.1, 0.3), (0.1, 0.05), (0.9, 0.05), (0.2, 0.0), (0.2, 0.1)]
+        .map(|(time_to_live, growth)| Ageing { time_to_live, growth, hold: 2.0 });
+    let mut table: Table<f64, 2, 1> = Table::new();
+    table.upsert(1, Obstacle::new(ObstacleSpec::default()).unwrap(), 0.0, &rules[0]).unwrap();
+    let way = Vector::<f64, 2>::new(1.0, 0.0);
+    let mut grew = 0;
+    for step in 0..1200 {
+        let now = &rules[step / 200];
+        // As the controller does when it is given other settings.
+        table.rules_changed(now);
+        let before = table.at(0).unwrap().clone();
+        let surface = before.surface(&way);
+        let said = before.sample(&(surface + way * 1e-9)).surface_velocity.x;
+        table.advance(0.001, now);
+        let came = (table.at(0).unwrap().surface(&way) - surface).x / 0.001;
+        assert!((came - said).abs() < 1e-6, "step {step}: {said} said, {came} came");
+        grew += u32::from(came > 1e-6);
+    }
+    assert!(grew > 600, "{grew}");
+}

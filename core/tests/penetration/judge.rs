@@ -62,20 +62,25 @@ impl<const D: usize> Asked<D> {
         for entry in controller.table().iter() {
             let o = entry.obstacle();
             match &o.spec().shape {
-                _ if o.spec().wall => {
+                shape if o.spec().wall && !matches!(shape, Shape::Polygon(_)) => {
                     // The curve of the wall within a step takes at most 1.2 p (2p - 1) L^2 of 1 - gamma, with p = 3 and L = 2 mm/0.7 m 1.5e-4, and of a
                     // box whose corners have a radius of 0.2 m 2e-5 m: nothing where the gauge is below 0.98. Its rate of approach asks for more.
                     may_stand &= o.gamma(state.position()).to_f64() > 1.0 / (0.98 * 0.98);
                     more = true;
                 }
                 Shape::Polygon(polygon) => {
-                    // One of its pieces' sides, that with most room for what is wanted. A corner of a piece may be as sharp as 11.5 degrees (two corners 30
-                    // degrees apart, one three times as far out), so a point at a distance d from the piece is at least d/10 beyond one of its sides,
-                    // and the chosen one has as much but for two steps.
-                    let d = distance(o, polygon.vertices(), &x);
+                    // One of its pieces' sides, that with most room for what is wanted. A point at a distance d from a piece is at least d sin(a/2) beyond
+                    // one of its sides, where a is the sharpest of its corners, and the chosen one has as much but for two steps.
+                    let corners = corners(o, polygon.vertices());
+                    let d = distance(&corners, &x);
+                    let share = (0.5 * sharpest(&corners, &numbers(&o.spec().center))).sin();
                     let inside = o.gamma(state.position()) <= S::one();
-                    may_stand &= !inside && d > 10.0 * (2.0 * step + skin + rounding.distance);
-                    more |= inside || (0.1 * d - 2.0 * step - skin) * alpha < step;
+                    let size = corners.iter().map(|c| (c - numbers(&o.spec().center)).norm()).fold(0.0, f64::max);
+                    // In fixed point epsilon has no square.
+                    let unit = if S::EPSILON * S::EPSILON > S::zero() { 2.0 } else { size.max(2.0) };
+                    let skin = skin + (8.0 * eps * size * unit - 1.0 / 65536.0).max(0.0);
+                    may_stand &= !inside && share * d > 2.0 * step + skin + rounding.distance;
+                    more |= inside || (share * d - 2.0 * step - skin) * alpha < step;
                 }
                 _ => {
                     if let Some((normal, gap)) = supporting(o, state.position()) {
@@ -138,18 +143,35 @@ fn supporting<S: Scalar, const D: usize>(o: &Obstacle<S, D>, x: &Vector<S, D>) -
     Some(if slope > 0.0 && slope.is_finite() { (gradient.normalize(), (lambda - 1.0) / slope) } else { none() })
 }
 
-/// From the nearest of its edges, m.
-fn distance<S: Scalar, const D: usize>(o: &Obstacle<S, D>, vertices: &[[S; 2]], x: &Vector<f64, D>) -> f64 {
+/// A polygon's corners in the world, m.
+fn corners<S: Scalar, const D: usize>(o: &Obstacle<S, D>, vertices: &[[S; 2]]) -> Vec<Vector<f64, D>> {
     let corner = |v: &[S; 2]| {
         let way = o.spec().rotation * Vector::<S, D>::from_fn(|i, _| v[i.min(1)]);
         numbers(&o.surface(&way))
     };
-    let corners: Vec<Vector<f64, D>> = vertices.iter().map(corner).collect();
-    let next = corners.iter().skip(1).chain(corners.first());
-    let edges = corners.iter().zip(next).map(|(a, b)| {
+    vertices.iter().map(corner).collect()
+}
+
+fn edges<const D: usize>(corners: &[Vector<f64, D>]) -> impl Iterator<Item = (&Vector<f64, D>, &Vector<f64, D>)> {
+    corners.iter().zip(corners.iter().skip(1).chain(corners.first()))
+}
+
+/// From the nearest of its edges, m.
+fn distance<const D: usize>(corners: &[Vector<f64, D>], x: &Vector<f64, D>) -> f64 {
+    let from = |(a, b): (&Vector<f64, D>, &Vector<f64, D>)| {
         let along = b - a;
         let t = ((x - a).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
         (x - (a + along * t)).norm()
-    });
-    edges.fold(f64::MAX, f64::min)
+    };
+    edges(corners).map(from).fold(f64::MAX, f64::min)
+}
+
+/// The sharpest angle of a triangle of the centre and an edge, or of what is beyond the edge in its sector, rad: no convex piece has a sharper one.
+fn sharpest<const D: usize>(corners: &[Vector<f64, D>], center: &Vector<f64, D>) -> f64 {
+    let angle = |a: Vector<f64, D>, b: Vector<f64, D>| (a.dot(&b) / (a.norm() * b.norm())).clamp(-1.0, 1.0).acos();
+    let least = |(a, b): (&Vector<f64, D>, &Vector<f64, D>)| {
+        let inner = [angle(center - a, b - a), angle(center - b, a - b), angle(a - center, b - center)];
+        inner.into_iter().flat_map(|a| [a, std::f64::consts::PI - a]).fold(f64::MAX, f64::min)
+    };
+    edges(corners).map(least).fold(f64::MAX, f64::min)
 }

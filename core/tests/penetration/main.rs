@@ -80,8 +80,8 @@ fn campaign<S: Scalar, const D: usize>(kind: Kind, seed: u64) -> Tally {
     tally
 }
 
-const STILL: Kind = Kind { obstacles: 30, speed: 0.0, walls: true, scans: true };
-const MOVING: Kind = Kind { obstacles: 30, speed: 2.0, walls: true, scans: true };
+const STILL: Kind = Kind { obstacles: 30, speed: 0.0, walls: true, scans: true, odd: true };
+const MOVING: Kind = Kind { obstacles: 30, speed: 2.0, walls: true, scans: true, odd: true };
 
 macro_rules! campaigns {
     ($($name:ident: $scalar:ty, $d:literal, $kind:expr, $seed:literal;)+) => {

@@ -55,7 +55,7 @@ fn spin<S: Scalar, const D: usize>(r: &mut Random, most: f64) -> Matrix<S, D> {
     Matrix::from_fn(|i, j| S::from_f64(m[(i, j)]))
 }
 
-pub fn shape<S: Scalar, const D: usize>(r: &mut Random, size: f64) -> Shape<S, D> {
+pub fn shape<S: Scalar, const D: usize>(r: &mut Random, size: f64, odd: bool) -> Shape<S, D> {
     let s = S::from_f64;
     let length = |r: &mut Random| size * r.random_range(0.3..1.0f64);
     let sides = [length(r), length(r), length(r)];
@@ -69,6 +69,7 @@ pub fn shape<S: Scalar, const D: usize>(r: &mut Random, size: f64) -> Shape<S, D
             Shape::Cylinder { radius: s(sides[0]), half_length: s(sides[2]), rounding: s(sides[0].min(sides[2]) * 0.3) }
         }
         6 if D == 3 => Shape::Capsule { radius: s(sides[0]), half_length: s(sides[1]) },
+        _ if D == 2 && odd && r.random_bool(0.5) => Shape::Polygon(uneven_polygon(r, size)),
         _ if D == 2 => {
             let n = r.random_range(4..=MAX_VERTICES);
             let corners: Vec<[S; 2]> = (0..n)
@@ -84,6 +85,37 @@ pub fn shape<S: Scalar, const D: usize>(r: &mut Random, size: f64) -> Shape<S, D
     }
 }
 
+/// A polygon with corners at any angles, up to `size` (m) away: notches, spikes, and edges as short as the number type holds apart.
+pub fn uneven_polygon<S: Scalar>(r: &mut Random, size: f64) -> Polygon<S> {
+    loop {
+        let n = r.random_range(3..=MAX_VERTICES);
+        let mut angles: Vec<f64> = (0..n).map(|_| r.random_range(0.0..std::f64::consts::TAU)).collect();
+        if r.random_bool(0.3) {
+            // Two corners close together.
+            angles[1] = angles[0] + 10f64.powf(r.random_range(-5.0..-1.0));
+        }
+        angles.sort_by(f64::total_cmp);
+        let kind = r.random_range(0..3u8);
+        let corners: Vec<[S; 2]> = angles
+            .iter()
+            .map(|angle| {
+                let radius = size
+                    * match kind {
+                        0 => r.random_range(0.2..1.0f64),
+                        1 => 0.7,
+                        _ => 10f64.powf(r.random_range(-1.3..0.0)),
+                    };
+                [S::from_f64(radius * angle.cos()), S::from_f64(radius * angle.sin())]
+            })
+            .collect();
+        let polygon = Polygon::new(&corners).unwrap();
+        let spec = ObstacleSpec { shape: Shape::Polygon(polygon.clone()), ..ObstacleSpec::<S, 2>::default() };
+        if Obstacle::new(spec).is_ok() {
+            return polygon;
+        }
+    }
+}
+
 /// What may be in a world.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
@@ -93,6 +125,8 @@ pub struct Kind {
     pub speed: f64,
     pub walls: bool,
     pub scans: bool,
+    /// Polygons with corners at any angles, walls of up to tens of metres, and bodies from 1 cm to half a metre?
+    pub odd: bool,
 }
 
 pub fn obstacle<S: Scalar, const D: usize>(r: &mut Random, kind: &Kind) -> Option<Obstacle<S, D>> {
@@ -102,7 +136,9 @@ pub fn obstacle<S: Scalar, const D: usize>(r: &mut Random, kind: &Kind) -> Optio
     let ratio = if r.random_bool(0.5) { ones } else { [r.random_range(1.0..2.5f64); 3] };
     let margin = if r.random_bool(0.6) { ones } else { [(); 3].map(|()| r.random_range(1.0..1.4f64)) };
     let velocity: Vector<S, D> = vector(&within(r, fast / 1.75));
-    let shape = shape(r, 0.15);
+    // Mostly as large as each other, some small, some large.
+    let size = if !kind.odd || r.random_bool(0.8) { 0.15 } else { 10f64.powf(r.random_range(-1.5..-0.4)) };
+    let shape = shape(r, size, kind.odd);
     let margin = if let Shape::Polygon(_) = shape { [margin[0]; 3] } else { margin };
     let reference = vector(&[0.01, -0.005, 0.005].map(|x| if r.random_bool(0.3) { x } else { 0.0 }));
     let growth = if r.random_bool(0.3) { r.random_range(-0.1..0.1f64) * fast } else { 0.0 };
@@ -122,14 +158,23 @@ pub fn obstacle<S: Scalar, const D: usize>(r: &mut Random, kind: &Kind) -> Optio
     Obstacle::new(spec).ok()
 }
 
-pub fn wall<S: Scalar, const D: usize>(r: &mut Random) -> Obstacle<S, D> {
-    let half = Vector::<S, D>::from_fn(|_, _| S::from_f64(r.random_range(0.7..1.0f64)));
-    let shape = match r.random_range(0..3u8) {
+pub fn wall<S: Scalar, const D: usize>(r: &mut Random, odd: bool) -> Obstacle<S, D> {
+    // Some so large that what is near of them is nearly flat.
+    let size = if odd && r.random_bool(0.25) { 10f64.powf(r.random_range(0.0..1.5)) } else { 1.0 };
+    let half = Vector::<S, D>::from_fn(|_, _| S::from_f64(size * r.random_range(0.7..1.0f64)));
+    let shape = match r.random_range(0..if odd { 4u8 } else { 3 }) {
         0 => Shape::ellipsoid(half),
         1 => Shape::Ellipsoid { axes: half, curvature: 3 },
-        _ => Shape::Box { half, rounding: S::from_f64(0.2) },
+        3 if D == 2 => Shape::Polygon(uneven_polygon(r, 1.5 * size)),
+        _ => Shape::Box { half, rounding: S::from_f64(0.2 * size) },
     };
-    Obstacle::new(ObstacleSpec { shape, wall: true, rotation: turn(r), ..ObstacleSpec::default() }).unwrap()
+    // Its surface passes the robot's workspace all the same.
+    let mut center = Vector::zeros();
+    if odd {
+        let way = Vector::<f64, D>::from_fn(|_, _| r.random_range(-1.0..1.0));
+        center = (way * ((size - 1.0) / way.norm().max(0.1))).map(S::from_f64);
+    }
+    Obstacle::new(ObstacleSpec { shape, center, wall: true, rotation: turn(r), ..ObstacleSpec::default() }).unwrap()
 }
 
 /// A stable motion: straight, or of some components by construction (A = -(rate I) + skew, so P = I proves it).
@@ -192,7 +237,7 @@ pub fn world<S: Scalar, const D: usize>(seed: u64, kind: &Kind) -> Option<World<
     let r = &mut random(seed);
     let mut controller: Controller<S, D, 32> = Controller::new(motion(r), settings(r));
     if kind.walls && r.random_bool(0.25) {
-        controller.upsert(1000, wall(r), S::zero()).unwrap();
+        controller.upsert(1000, wall(r, kind.odd), S::zero()).unwrap();
     }
     for id in 0..r.random_range(1..=kind.obstacles) {
         if let Some(o) = obstacle(r, kind) {

@@ -3,7 +3,7 @@
 //! Off a piece, behind any line that has all of it behind, keeps off it exactly; off every piece, off the whole, corners and notches included.
 
 use super::pieces::{Piece, Pieces, Run};
-use super::{MAX_VERTICES, dot, plane, sub, vector};
+use super::{MAX_VERTICES, dot, plane, size, sub, vector};
 use crate::shape::Place;
 use crate::{Scalar, Vector};
 
@@ -110,8 +110,51 @@ impl<S: Scalar> View<S> {
         }
     }
 
-    /// The line to keep behind for a piece.
+    /// The line to keep behind for a piece: moved out to where it has every corner of that behind it, whatever rounding made of its direction.
     fn side(&self, piece: &Piece) -> Option<Side<S>> {
+        let chosen = self.chosen(piece)?;
+        let held = self.held(piece, chosen);
+        let rounding = S::rounding(S::one()) * S::from_f64(4.0) * (S::one() + size(self.u));
+        if held.gap + rounding >= chosen.gap {
+            return Some(held);
+        }
+        // A short edge may be turned so far that its line is no longer the piece's. Then another line will do: along another edge, across the way from a
+        // corner, or one through the origin.
+        let mut best = self.best();
+        best.consider(held);
+        self.each(&piece.outline, |edge| best.consider(self.held(piece, edge.line)));
+        self.each(&piece.edges, |edge| {
+            for corner in [edge.from, edge.to] {
+                let (gap, normal) = S::unit(sub(self.u, corner));
+                // Of a body the origin is to be behind it, too.
+                if gap > S::zero() && (self.wall || dot(normal, self.u) >= gap) {
+                    best.consider(self.held(piece, Side { normal, gap }));
+                }
+            }
+        });
+        if usize::from(piece.edges.count) < self.edges.len() {
+            self.beside(&piece.edges, |side| best.consider(self.held(piece, side)));
+        }
+        Some(best.best?.side)
+    }
+
+    /// A line no farther out than this one that has every corner of a piece behind it.
+    fn held(&self, piece: &Piece, side: Side<S>) -> Side<S> {
+        let mut gap = side.gap;
+        self.each(&piece.edges, |edge| {
+            for corner in [edge.from, edge.to] {
+                gap = gap.min(dot(side.normal, sub(self.u, corner)));
+            }
+        });
+        Side { gap, ..side }
+    }
+
+    fn best(&self) -> Best<S> {
+        Best { wish: self.wish, share: self.share, best: None }
+    }
+
+    /// The same but for rounding.
+    fn chosen(&self, piece: &Piece) -> Option<Side<S>> {
         let whole = usize::from(piece.edges.count) == self.edges.len();
         match self.nearest(&piece.outline, whole) {
             Nearest::Edge(edge) if edge.line.gap > S::zero() => return Some(edge.line),
@@ -121,17 +164,17 @@ impl<S: Scalar> View<S> {
             }
             _ => {}
         }
-        let mut best = Best { wish: self.wish, share: self.share, best: None };
+        let mut best = self.best();
         self.each(&piece.outline, |edge| best.consider(edge.line));
         if !whole {
-            self.beside(&piece.edges, &mut best);
+            self.beside(&piece.edges, |side| best.consider(side));
         }
         Some(best.best?.side)
     }
 
     /// The sides along the rays through a piece's first and last corners, and across the way to the origin where all of it is beyond that. Only whoever
     /// is beyond one keeps behind it: from within, the way out is over an edge.
-    fn beside(&self, piece: &Run, best: &mut Best<S>) {
+    fn beside(&self, piece: &Run, mut consider: impl FnMut(Side<S>)) {
         let (mut first, mut last) = (None, None);
         self.each(piece, |edge| {
             first = first.or(Some(edge.from));
@@ -141,12 +184,12 @@ impl<S: Scalar> View<S> {
         for normal in [[from[1], -from[0]], [-to[1], to[0]]] {
             if dot(normal, self.u) > S::zero() {
                 let normal = S::unit(normal).1;
-                best.consider(Side { normal, gap: dot(normal, self.u) });
+                consider(Side { normal, gap: dot(normal, self.u) });
             }
         }
         let (gap, normal) = S::unit(self.u);
         if gap > S::zero() && [from, to].iter().all(|v| dot(*v, normal) <= S::zero()) {
-            best.consider(Side { normal, gap });
+            consider(Side { normal, gap });
         }
     }
 

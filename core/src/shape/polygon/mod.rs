@@ -45,11 +45,13 @@ struct Edge<S> {
 impl<S: Scalar> Edge<S> {
     /// None where the edge's line goes through the origin or on its wrong side.
     fn new(from: [S; 2], to: [S; 2]) -> Option<Self> {
-        let double_area = cross(from, to);
         let along = sub(to, from);
+        // Over its own length first: in fixed point twice the area that a short edge spans has few digits left.
+        let (_, across) = S::unit([along[1], -along[0]]);
+        let distance = dot(across, from).min(dot(across, to));
         // |normal| = 1/distance of the edge's line.
-        let normal = [along[1] / double_area, -along[0] / double_area];
-        (double_area > S::zero()).then_some(Self { from, to, along, normal })
+        let normal = across.map(|n| n / distance);
+        (cross(from, to) > S::zero() && distance > S::zero()).then_some(Self { from, to, along, normal })
     }
 
     /// Its share in the normal of a neighbour, at this share of that one's length from the corner between them; `opposite` is the neighbour's

@@ -100,7 +100,7 @@ impl<S: Scalar> Cut<S> {
     /// Has the i-th edge's line all of a piece behind it?
     fn holds(&self, i: u8, piece: &Run) -> bool {
         let Some(edge) = self.edge(i) else { return false };
-        // What rounding lets stick out is less than the skin.
+        // What rounding lets stick out the line is moved for, when it is kept behind.
         let rounding = S::rounding(size(edge.normal)) * S::from_f64(4.0);
         let behind = |v| {
             let over = dot(edge.normal, v) - S::one();

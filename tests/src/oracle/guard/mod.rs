@@ -14,9 +14,9 @@ use super::scene::OracleScene;
 use super::shape::{Inner, Shape, away, turned_right};
 pub(super) use nearest::{Bound, least_violation, nearest};
 
-/// Units of rounding, at the size of the position, that a gap is reduced by.
+/// Units of rounding, at the size of the position or of the body, that a gap is reduced by.
 const ROUNDING: f64 = 16.0;
-/// Nor less than this, m.
+/// Nor less than this, m; in f64 that is the most of all three for every size there may be, so the body's does not enter here.
 const SKIN: f64 = 0.0000152587890625;
 
 /// The share of what is lacking that is made up for in the outer half of the skin.
