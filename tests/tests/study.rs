@@ -165,3 +165,19 @@ fn a_folder_without_the_motions_is_bad_input_that_names_the_file() {
     assert!(ended.json()["error"]["message"].as_str().unwrap().contains(".mat"), "{}", ended.stdout);
     fs::remove_dir_all(folder).unwrap();
 }
+
+#[test]
+fn a_folder_that_cannot_be_written_to_is_bad_input_at_once() {
+    let folder = folder("unwritable");
+    fs::write(folder.join("file"), "").unwrap();
+    for arguments in [&["study", "paper"][..], &["study", "lasa", "--data", "."]] {
+        let ended = programs::run(&folder, arguments.iter().chain(&["-o", "file/out", "--json"])).unwrap();
+        assert_eq!(ended.code, Some(2));
+        assert!(
+            ended.json()["error"]["message"].as_str().unwrap().contains("cannot be written to"),
+            "{}",
+            ended.stdout
+        );
+    }
+    fs::remove_dir_all(folder).unwrap();
+}

@@ -12,7 +12,7 @@ use super::{Finished, print_json, progress};
 use crate::bridge::Device;
 use crate::error::Outcome;
 use crate::study::skill::Skills;
-use crate::study::{Findings, column, experiments, placements, trajectories};
+use crate::study::{Findings, column, experiments, findings, placements, trajectories};
 
 /// Options of `pliant study`.
 #[derive(Clone, Debug, clap::Args)]
@@ -130,6 +130,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
 
 fn of_paper(study: &OfPaper, json: bool) -> Finished {
     let common = study.common();
+    findings::prepare(&common.out)?;
     let bar = progress::bar(json);
     let stage = Stage { bar: &bar };
     let skills = stage.run("motions", |done| Skills::new(common.data.as_deref(), done))?;

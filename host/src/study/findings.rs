@@ -107,6 +107,17 @@ impl Findings {
     }
 }
 
+/// Makes the folder, and sees that a file can be written into it, before anything is computed for it.
+///
+/// # Errors
+/// It cannot.
+pub fn prepare(folder: &Path) -> Result<(), Error> {
+    let failed = |e: std::io::Error| Error::bad_input(format!("{}: cannot be written to: {e}", folder.display()));
+    fs::create_dir_all(folder).map_err(failed)?;
+    let probe = folder.join(".pliant-can-write");
+    fs::write(&probe, "").and_then(|()| fs::remove_file(&probe)).map_err(failed)
+}
+
 fn put(path: &Path, text: &str) -> Result<(), Error> {
     let failed = |e: std::io::Error| Error::failed(format!("{}: cannot be written: {e}", path.display()));
     if let Some(folder) = path.parent() {

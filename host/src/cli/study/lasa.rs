@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use super::super::{Finished, print_json, progress};
 use crate::error::{Error, Outcome};
 use crate::learn::{Options, Unit};
+use crate::study::findings;
 use crate::study::lasa::{Found, Task, study};
 
 /// Options of `pliant study lasa`.
@@ -36,6 +37,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         return Err(Error::bad_input("--data DIR is missing: the folder of the motions").with_help(WHERE));
     };
     let task = Task { folder, unit: args.unit, seed: args.seed, held_out: args.held_out };
+    findings::prepare(&args.out)?;
     let bar = progress::bar(json);
     let found = study(&task, &|what, done, of| {
         bar.set_message(format!("{what} {done} of {of}"));
