@@ -164,6 +164,17 @@ impl<P: Copy + PartialEq> Desk<P> {
         }
     }
 
+    /// The motion of what has been uploaded. In a function of its own: the model is off the stack when the motion finds its place.
+    #[inline(never)]
+    fn uploaded(&mut self) -> Result<AnyMotion, DeviceError> {
+        let model = self.upload.commit().map_err(DeviceError::Upload)?;
+        match model.dimension {
+            2 => Ok(AnyMotion::Planar(convert::motion::<2>(&model)?)),
+            3 => Ok(AnyMotion::Spatial(convert::motion::<3>(&model)?)),
+            _ => Err(DeviceError::Dimension),
+        }
+    }
+
     fn undecoded(&mut self, error: FrameError) -> Option<ToHost> {
         match DeviceError::of_frame(error) {
             Some((sequence, error)) => Some(self.refusal(sequence, error)),
@@ -222,12 +233,7 @@ impl<P: Copy + PartialEq> Desk<P> {
             }
             ToDevice::UploadCommit if self.committed => act(&mut |_| Ok(())),
             ToDevice::UploadCommit => {
-                let model = self.upload.commit().map_err(DeviceError::Upload)?;
-                let motion = match model.dimension {
-                    2 => AnyMotion::Planar(convert::motion::<2>(&model)?),
-                    3 => AnyMotion::Spatial(convert::motion::<3>(&model)?),
-                    _ => return Err(DeviceError::Dimension),
-                };
+                let motion = self.uploaded()?;
                 let dimension = match motion {
                     InSpace::Planar(_) => InSpace::Planar(()),
                     InSpace::Spatial(_) => InSpace::Spatial(()),

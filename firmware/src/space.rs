@@ -151,14 +151,16 @@ impl Space {
 }
 
 // A controller is tens of kilobytes, and is on the stack once before it is where it belongs. In one function there would be stack for one
-// of each dimension at the same time.
+// of each dimension at the same time; and a room that is emptied first needs no stack for what was there.
 
 #[inline(never)]
 fn place_planar(room: &mut Option<Space>, motion: Motion<f32, 2>, settings: Settings<f32>) {
-    *room = Some(Space::Planar(Controller::new(motion, settings)));
+    *room = None;
+    room.get_or_insert_with(|| Space::Planar(Controller::new(motion, settings)));
 }
 
 #[inline(never)]
 fn place_spatial(room: &mut Option<Space>, motion: Motion<f32, 3>, settings: Settings<f32>) {
-    *room = Some(Space::Spatial(Controller::new(motion, settings)));
+    *room = None;
+    room.get_or_insert_with(|| Space::Spatial(Controller::new(motion, settings)));
 }
