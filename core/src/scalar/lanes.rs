@@ -30,8 +30,6 @@ pub trait Lanes<S: Scalar, const N: usize>:
     fn mask(answer: bool) -> Self::Mask;
     /// |x|
     fn abs(self) -> Self;
-    /// Square root.
-    fn sqrt(self) -> Self;
     /// self < other
     fn below(self, other: Self) -> Self::Mask;
     /// self = 0
@@ -101,10 +99,6 @@ impl<S: Scalar, const N: usize> Lanes<S, N> for Each<S, N> {
         Self(self.0.map(S::abs))
     }
     #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(self.0.map(S::sqrt))
-    }
-    #[inline(always)]
     fn below(self, other: Self) -> [bool; N] {
         from_fn(|i| self.0[i] < other.0[i])
     }
@@ -166,10 +160,6 @@ mod registers {
                 #[inline(always)]
                 fn abs(self) -> Self {
                     <$wide>::abs(self)
-                }
-                #[inline(always)]
-                fn sqrt(self) -> Self {
-                    <$wide>::sqrt(self)
                 }
                 #[inline(always)]
                 fn below(self, other: Self) -> Self {
