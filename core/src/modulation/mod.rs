@@ -213,15 +213,12 @@ impl<S: Scalar, const D: usize> DirectionalMean<S, D> {
     }
 
     /// Takes in the velocities past these obstacles.
-    #[inline(never)]
+    #[inline(always)]
     fn take(&mut self, groups: &[Group<S, D>]) {
-        // A copy stays in registers.
-        let mut mean = *self;
         for group in groups {
-            let (usable, velocity) = group.past(&mean.f);
-            mean.add(group, usable, &velocity);
+            let (usable, velocity) = group.past(&self.f);
+            self.add(group, usable, &velocity);
         }
-        *self = mean;
     }
 
     /// Adds velocities past some obstacles.

@@ -97,8 +97,7 @@ impl<S: Scalar, const N: usize> ArcTangent<S, N> {
         let series = self.series.iter().rev().map(|c| of(*c)).reduce(|sum, c| sum * u + c).unwrap_or(zero);
         let rest = t + t * (u * series);
         let back = x.below(zero);
-        let rest = L::select(upright, -rest, rest);
-        let rest = L::select(back, -rest, rest);
+        let rest = rest.opposite_where(upright).opposite_where(back);
         let leading = L::select(back, of(self.half), zero);
         let leading = L::select(upright, of(self.quarter), leading);
         let odd = L::select(back, of(self.three_eighths), of(self.eighth));
@@ -109,7 +108,7 @@ impl<S: Scalar, const N: usize> ArcTangent<S, N> {
         let angle = leading + rest;
         // Halves of sum and difference are the point turned by pi/4 and sqrt(2) times as near.
         let factor = L::select(steep, of(S::from_f64(core::f64::consts::SQRT_2)), one);
-        (under * root(one + u) * factor, L::select(y.below(zero), -angle, angle))
+        (under * root(one + u) * factor, angle.opposite_where(y.below(zero)))
     }
 }
 

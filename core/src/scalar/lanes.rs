@@ -36,6 +36,8 @@ pub trait Lanes<S: Scalar, const N: usize>:
     fn is_zero(self) -> Self::Mask;
     /// `yes` where the mask says so, else `no`.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// -self where the mask says so, else self.
+    fn opposite_where(self, mask: Self::Mask) -> Self;
     /// self/under where the mask says so, else `otherwise`.
     fn over_where(self, mask: Self::Mask, under: Self, otherwise: Self) -> Self;
     /// Does the first mask say so in any lane where the second does not?
@@ -111,6 +113,10 @@ impl<S: Scalar, const N: usize> Lanes<S, N> for Each<S, N> {
         Self(from_fn(|i| if mask[i] { yes.0[i] } else { no.0[i] }))
     }
     #[inline(always)]
+    fn opposite_where(self, mask: [bool; N]) -> Self {
+        Self(from_fn(|i| if mask[i] { -self.0[i] } else { self.0[i] }))
+    }
+    #[inline(always)]
     fn over_where(self, mask: [bool; N], under: Self, otherwise: Self) -> Self {
         Self(from_fn(|i| if mask[i] { self.0[i] / under.0[i] } else { otherwise.0[i] }))
     }
@@ -172,6 +178,10 @@ mod registers {
                 #[inline(always)]
                 fn select(mask: Self, yes: Self, no: Self) -> Self {
                     mask.bitselect(yes, no)
+                }
+                #[inline(always)]
+                fn opposite_where(self, mask: Self) -> Self {
+                    self ^ (mask & Self::splat(-0.0))
                 }
                 #[inline(always)]
                 fn over_where(self, mask: Self, under: Self, otherwise: Self) -> Self {

@@ -8,6 +8,8 @@ mod tests;
 
 pub use ageing::Ageing;
 
+use core::hint::select_unpredictable;
+
 use crate::modulation::Modulation;
 use crate::surroundings::Surroundings;
 use crate::{Obstacle, Scalar, Scan, Status, Vector};
@@ -244,9 +246,9 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 // Cannot be full: it has the table's own capacity.
                 let _ = around.soft.push(layer);
             }
-            if sample.gamma < gamma {
-                (gamma, nearest) = (sample.gamma, Some(entry));
-            }
+            let nearer = sample.gamma < gamma;
+            // A branch is often predicted wrongly here.
+            (gamma, nearest) = select_unpredictable(nearer, (sample.gamma, Some(entry)), (gamma, nearest));
         }
         let (of_obstacles, mut points) = (gamma, None);
         if !self.scan.points().is_empty() {
