@@ -10,7 +10,7 @@
 
 use core::array::from_fn;
 
-use crate::obstacle::Sample;
+use crate::obstacle::{Abreast, Sample};
 use crate::scalar::lanes::{Each, LANES, Lanes};
 use crate::{Scalar, Vector, norm, unit};
 
@@ -124,6 +124,16 @@ impl<S: Scalar, const D: usize, const CAP: usize> Modulation<S, D, CAP> {
         if LANES > 1 {
             self.lane = lane + 1;
         }
+    }
+
+    /// As many more as there are lanes.
+    #[inline(always)]
+    pub fn push_abreast(&mut self, few: &Abreast<S, D>) {
+        let each = |v: &[S::Lanes; D]| v.map(Lanes::numbers);
+        let (outward, arm) = (each(&few.outward), each(&few.arm));
+        let surface_velocity = [[S::zero(); LANES]; D];
+        let _ = self.groups.push(Group { gamma: few.gamma.numbers(), outward, arm, surface_velocity });
+        self.lane = LANES;
     }
 
     /// The velocity past all of them and past one more, if there is one, m/s; and whether one of their reference points was unusable. `gamma` is

@@ -9,6 +9,7 @@
 //! Khansari-Zadeh & Billard (2012) with the safety factors eta inside, so that the inflated surface is the one that cannot be penetrated.
 //! Gamma_k is eq. 13 of Chen et al., with ln k + 1 = rho. A wall has 1/gamma, and both its surfaces come inwards: L_i/eta_i, L_i/rho_i.
 
+mod abreast;
 mod motion;
 mod reference;
 mod sample;
@@ -20,6 +21,7 @@ mod tests;
 pub use crate::shape::MAX_CURVATURE;
 pub use spec::{MAX_RATIO, MAX_SPEED, MIN_AXIS, ObstacleError, ObstacleSpec};
 
+pub(crate) use abreast::Abreast;
 pub(crate) use sample::{Sample, SoftLayer};
 
 use crate::shape::{Body, Place, root};
@@ -52,6 +54,8 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     leans: bool,
     /// Is it an ellipsoid with p = 1, and no wall? The usual case goes a short way.
     plain: bool,
+    /// Is it of the usual kind altogether: plain, at rest, and its r leads from its reference point?
+    usual: bool,
     /// Is Gamma the square of the gauge? Of a wall and a superellipsoid it is not.
     quadratic: bool,
     /// Does it move, turn or grow? Does it turn?
@@ -124,6 +128,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             lean: nothing,
             leans: false,
             plain: !spec.wall && body.is_ellipsoid(),
+            usual: false,
             quadratic: !spec.wall && body.power() == 1,
             moves: false,
             spins: false,

@@ -149,6 +149,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.swelling = ageing * most + grows * eta * if retreats { least } else { most };
         self.spins = !is_zero(&self.spec.spin);
         self.moves = self.spins || !is_zero(&self.spec.velocity) || grows != zero || self.ageing != zero;
+        self.sort();
     }
 
     /// The Gamma beyond which no point is in the soft layer.

@@ -56,6 +56,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     pub(crate) fn lean_towards(&mut self, root: Option<&Vector<S, D>>) {
         let lean = root.map_or_else(Vector::zeros, |root| root - self.reference());
         self.leans = !is_zero(&lean);
+        self.sort();
         self.local_lean = transposed_times(&self.spec.rotation, &lean);
         self.place_reference();
     }
@@ -67,6 +68,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             None => (self.spec.reference, self.unit.map(|unit| S::one() / unit)),
         };
         (self.leans, self.local_lean) = (false, Vector::zeros());
+        self.sort();
         self.place_reference();
     }
 

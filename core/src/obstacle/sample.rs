@@ -66,6 +66,12 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         gamma <= self.soft_until
     }
 
+    /// The soft layer at x, where nothing was sampled.
+    #[inline(never)]
+    pub(crate) fn soft_layer_at(&self, x: &Vector<S, D>) -> Option<SoftLayer<S, D>> {
+        self.soft_layer(x, self.sample(x))
+    }
+
     /// The soft layer at x, if x is in it and not in the core, from what was sampled there.
     #[inline(never)]
     pub(crate) fn soft_layer(&self, x: &Vector<S, D>, sample: Sample<S, D>) -> Option<SoftLayer<S, D>> {

@@ -1,6 +1,7 @@
 use super::*;
+use crate::scalar::lanes::{LANES, Lanes};
 use crate::shape::{Polygon, Shape};
-use crate::{Matrix, rotation};
+use crate::{Fixed, Matrix, rotation};
 use proptest::prelude::*;
 
 fn spec() -> ObstacleSpec<f64, 2> {
@@ -74,4 +75,49 @@ proptest! {
         let q = Vector::<f64, 2>::new(0.08 * 1.1 * angle.cos(), 0.04 * 1.3 * angle.sin());
         prop_assert!((o.gamma(&(o.spec().center + o.spec().rotation * q)) - 1.0).abs() < 1e-12);
     }
+}
+
+/// What is computed side by side has the bits of what is computed one by one.
+fn abreast_as_alone<S: Scalar, const D: usize>() {
+    let vector = |x: [f64; 3]| Vector::<S, D>::from_fn(|i, _| S::from_f64(x[i]));
+    let few: [Obstacle<S, D>; LANES] = core::array::from_fn(|i| {
+        let k = i as f64;
+        let shape = Shape::ellipsoid(vector([0.1 + 0.03 * k, 0.2, 0.31 - 0.05 * k]));
+        let center = vector([0.3 * k, -0.7, 0.2]);
+        let reference = vector([0.02, 0.03 * k, -0.01]);
+        let mut rotation = Matrix::identity();
+        let (sin, cos) = S::from_f64(0.4 * k).sin_cos();
+        (rotation[(0, 0)], rotation[(0, 1)]) = (cos, -sin);
+        (rotation[(1, 0)], rotation[(1, 1)]) = (sin, cos);
+        Obstacle::new(ObstacleSpec { center, shape, reference, rotation, ..ObstacleSpec::default() }).unwrap()
+    });
+    let mut compared = 0;
+    for i in 0..400 {
+        let t = f64::from(i) * 0.11;
+        let x = vector([t.sin() * 0.02 * t, t.cos() * 0.03 * t, 0.01 * t]);
+        let Some(abreast) = Abreast::new(few.each_ref(), &x) else { continue };
+        for (lane, one) in few.iter().enumerate() {
+            let alone = one.sample(&x);
+            assert_eq!(abreast.gamma.numbers()[lane], alone.gamma);
+            assert_eq!(abreast.outward.map(|v| v.numbers()[lane]), alone.outward.data.0[0]);
+            assert_eq!(abreast.arm.map(|v| v.numbers()[lane]), alone.arm.data.0[0]);
+            assert!(alone.surface_velocity.iter().all(|v| *v == S::zero()));
+            compared += 1;
+        }
+    }
+    assert_eq!(compared > 0, Abreast::<S, D>::WORTH_IT);
+    let moving = Obstacle::new(ObstacleSpec { velocity: vector([0.1, 0.0, 0.0]), ..few[0].spec().clone() }).unwrap();
+    let mut some = few.each_ref();
+    some[LANES - 1] = &moving;
+    assert!(Abreast::new(some, &vector([0.5; 3])).is_none());
+}
+
+#[test]
+fn abreast_as_alone_in_every_number() {
+    abreast_as_alone::<f32, 2>();
+    abreast_as_alone::<f32, 3>();
+    abreast_as_alone::<f64, 2>();
+    abreast_as_alone::<f64, 3>();
+    abreast_as_alone::<Fixed, 2>();
+    abreast_as_alone::<Fixed, 3>();
 }

@@ -11,6 +11,8 @@ pub use ageing::Ageing;
 use core::hint::select_unpredictable;
 
 use crate::modulation::Modulation;
+use crate::obstacle::Abreast;
+use crate::scalar::lanes::Lanes;
 use crate::surroundings::Surroundings;
 use crate::{Obstacle, Scalar, Scan, Status, Vector};
 use clusters::Clusters;
@@ -36,6 +38,13 @@ impl<S: Scalar, const D: usize> Entry<S, D> {
     pub fn age(&self) -> S {
         self.age
     }
+}
+
+/// The nearer of two: a Gamma, and whose it is.
+#[inline(always)]
+fn nearer<S: Scalar, T>(one: (S, T), best: (S, T)) -> (S, T) {
+    // A branch is often predicted wrongly here.
+    select_unpredictable(one.0 < best.0, one, best)
 }
 
 /// There is no room for another obstacle; none was dropped.
@@ -221,7 +230,32 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         // Here rather than in there, where each obstacle would load and store it.
         let mut modulation: Modulation<S, D, CAP> = Modulation::new(&around.velocity);
         let (mut gamma, mut nearest) = (S::MAX, None);
-        for (index, entry) in self.entries.iter().enumerate() {
+        let (mut left, mut index) = (self.entries.iter(), 0);
+        loop {
+            if Abreast::<S, D>::WORTH_IT
+                && let Some((few, others)) = left.as_slice().split_first_chunk()
+                && let Some(abreast) = Abreast::new(few.each_ref().map(Entry::obstacle), x)
+            {
+                left = others.iter();
+                modulation.push_abreast(&abreast);
+                for (entry, one) in few.iter().zip(abreast.gamma.numbers()) {
+                    if let Some((reach, _)) = reach
+                        && entry.obstacle.is_near(one, reach)
+                    {
+                        let _ = around.near.push((index, reach));
+                    }
+                    if entry.obstacle.may_be_soft(one)
+                        && deformable
+                        && let Some(layer) = entry.obstacle.soft_layer_at(x)
+                    {
+                        let _ = around.soft.push(layer);
+                    }
+                    (gamma, nearest) = nearer((one, Some(entry)), (gamma, nearest));
+                    index += 1;
+                }
+                continue;
+            }
+            let Some(entry) = left.next() else { break };
             let sample = entry.obstacle.sample(x);
             if let Some((mut reach, dt)) = reach {
                 if entry.obstacle.moves() {
@@ -233,6 +267,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                     let _ = around.near.push((index, reach));
                 }
             }
+            index += 1;
             if !(sample.gamma < S::FAR) {
                 continue;
             }
@@ -246,9 +281,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 // Cannot be full: it has the table's own capacity.
                 let _ = around.soft.push(layer);
             }
-            let nearer = sample.gamma < gamma;
-            // A branch is often predicted wrongly here.
-            (gamma, nearest) = select_unpredictable(nearer, (sample.gamma, Some(entry)), (gamma, nearest));
+            (gamma, nearest) = nearer((sample.gamma, Some(entry)), (gamma, nearest));
         }
         let (of_obstacles, mut points) = (gamma, None);
         if !self.scan.points().is_empty() {
