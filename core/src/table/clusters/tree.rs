@@ -10,7 +10,7 @@ use crate::overlap::{self, Depth, Inside};
 use crate::{Scalar, Vector};
 
 /// Halvings of the way from an overlap to the parent's reference point.
-const HALVINGS: u8 = 12;
+const HALVINGS: u8 = 11;
 /// Gamma of the child up to which its reference point goes, and from which on no further is searched.
 const DEEPEST: (f64, f64) = (0.8, 0.76);
 
@@ -30,7 +30,9 @@ pub(super) fn refer<S: Scalar, const D: usize, const CAP: usize>(
     let (mut reached, mut front) = (roots, roots);
     while front != 0 {
         let mut next = 0;
-        while let Some(parent) = least_id(front, entries) {
+        while reached != cluster
+            && let Some(parent) = least_id(front, entries)
+        {
             front &= !(1 << parent);
             let children = neighbours.of(parent) & !reached;
             (reached, next) = (reached | children, next | children);
@@ -73,21 +75,22 @@ fn towards_parent<S: Scalar, const D: usize>(
         // They have moved apart since they were compared.
         return None;
     }
+    let (deepest, enough) = (S::from_f64(DEEPEST.0), S::from_f64(DEEPEST.1));
+    let end = parent.reference();
+    if !parent.spec().wall && child.sight(&end).0 <= deepest && parent.gamma(&end) < S::one() {
+        // As far as it may go: from wherever they overlap, there.
+        return Some(end);
+    }
     let (of_parent, of_child) = (Inside::Core(parent), Inside::Sight(child));
     let (a, b) = if parent_first { (of_parent, of_child) } else { (of_child, of_parent) };
     let point = overlap::between(a, b, Depth::Ample)?;
     if parent.spec().wall {
         return Some(point);
     }
-    let way = parent.reference() - point;
-    let (deepest, enough) = (S::from_f64(DEEPEST.0), S::from_f64(DEEPEST.1));
-    let (mut share, mut step) = (S::zero(), S::one());
+    let way = end - point;
+    let (mut share, mut step) = (S::zero(), S::from_f64(0.5));
     for _ in 0..HALVINGS {
         let further = share + step;
-        step *= S::from_f64(0.5);
-        if further > S::one() {
-            break;
-        }
         let level = child.sight(&(point + way * further)).0;
         if level <= deepest {
             share = further;
@@ -95,6 +98,7 @@ fn towards_parent<S: Scalar, const D: usize>(
                 break;
             }
         }
+        step *= S::from_f64(0.5);
     }
     Some(point + way * share)
 }
