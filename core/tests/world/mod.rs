@@ -9,6 +9,7 @@ use pliant_core::{
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+pub mod judge;
 pub mod scene;
 
 pub type Random = ChaCha8Rng;
