@@ -28,6 +28,7 @@ fn every_shipped_model_is_learnt_again_to_the_byte() {
     assert_eq!(skills, names("models"), "a folder of demonstrations a model");
     // A model names its sources relative to itself: beside copies of them it is the same.
     let folder = std::env::temp_dir().join(format!("pliant-models-{}", std::process::id()));
+    fs::create_dir_all(folder.join("models")).unwrap();
     for skill in skills {
         let (from, to) = (format!("demos/{skill}"), format!("models/{skill}.toml"));
         copied(&root().join(&from), &folder.join(&from));
