@@ -26,7 +26,7 @@ const BOX: f64 = 0.5 * UNIT;
 /// Hard semi-axes of the obstacle, m.
 pub const AXES: [f64; 2] = [0.06, 0.04];
 /// Where it is: at this share of the path, this far to its left, m.
-pub const PLACE: (f64, f64) = (0.53, 0.015);
+pub const PLACE: (f64, f64) = (0.54, 0.015);
 /// The radius of the target area, m, and how far from the core's end its middle is.
 const TARGET: f64 = 0.06;
 
