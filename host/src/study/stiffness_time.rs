@@ -148,16 +148,14 @@ fn falls(ours: &[&Times], starts: usize) -> Option<bool> {
     })
 }
 
-/// Over how many the means are, where that is not all.
+/// Over how many the means are, by increasing k, where that is not all.
 fn survivors(of: &[&Times]) -> String {
-    let starts = of.iter().map(|t| t.times.len()).max().unwrap_or(0);
-    let least = of.iter().map(|t| t.arrived()).min().unwrap_or(0);
-    let most = of.iter().map(|t| t.arrived()).max().unwrap_or(0);
-    match (least, most) {
-        (l, _) if l == starts => String::new(),
-        (l, m) if l == m => format!(", mean of the {m} of {starts} that arrive"),
-        (l, m) => format!(", mean of the {l} to {m} of {starts} that arrive"),
+    if of.iter().all(|t| t.arrived() == t.times.len()) {
+        return String::new();
     }
+    let starts = of.iter().map(|t| t.times.len()).max().unwrap_or(0);
+    let arrived: Vec<String> = of.iter().map(|t| t.arrived().to_string()).collect();
+    format!(", mean of those that arrive: {} of {starts}", arrived.join(", "))
 }
 
 fn chart(found: &[Times]) -> Chart {
@@ -205,10 +203,10 @@ mod tests {
         assert_eq!((all[0].mean(), all[0].deviation(), all[1].mean()), (Some(3.0), Some(1.0), Some(1.0)));
         let found: Vec<&Times> = all.iter().collect();
         assert_eq!((falls(&found, 2), falls(&found[..1], 2)), (Some(false), Some(true)));
-        assert_eq!(survivors(&found), ", mean of the 1 to 2 of 2 that arrive");
+        assert_eq!(survivors(&found), ", mean of those that arrive: 2, 1 of 2");
         assert_eq!(survivors(&found[..1]), "");
         let chart = chart(&all);
-        assert!(chart.series.iter().any(|s| s.name == "Pliant's default, mean of the 1 to 2 of 2 that arrive"));
+        assert!(chart.series.iter().any(|s| s.name == "Pliant's default, mean of those that arrive: 2, 1 of 2"));
         let none = times(0.0, &[None, None]);
         assert_eq!((none.mean(), falls(&[&none], 2)), (None, None));
     }

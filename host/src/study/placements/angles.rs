@@ -90,11 +90,11 @@ pub fn figure(all: &[Angle]) -> Figure {
             x: "theta_2 (degrees)".into(),
             y: "change of speed (%)".into(),
             guides: vec![
-                dashed("original", Colour::Original, vec![(-180.0, 0.0), (180.0, 0.0)]),
+                dashed(Column::Original.title(), Colour::Original, vec![(-180.0, 0.0), (180.0, 0.0)]),
                 dashed("theta_2 of the other studies", Colour::Reference, vec![(chosen, lowest), (chosen, highest)]),
             ],
             series: vec![
-                Series::line("Pliant's default, with the flow", Colour::Pliant, level),
+                Series::line("Pliant's default: with the flow", Colour::Pliant, level),
                 Series::line("paper to the letter", Colour::Letter, points(false)),
                 Series {
                     mark: Mark::Dots,
