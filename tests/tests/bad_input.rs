@@ -436,6 +436,8 @@ fn numbers_on_the_command_line() {
         (&["study", "paper", "--placements", "0"], "allowed is a whole number from 1"),
         (&["study", "placements", "--placements", "-3"], "allowed is a whole number from 1"),
         (&["study", "time", "--seed", "-3"], "allowed is a whole number from 0"),
+        (&["move", "m.toml", "-o", "n.toml", "--scale", "-2"], "allowed is 0.001 to 1000"),
+        (&["move", "m.toml", "-o", "n.toml", "--turn", "x"], "allowed is a number of degrees"),
         (&["study", "lasa", "--seed", "x"], "allowed is a whole number from 0"),
     ] {
         refused(&folder, arguments, &[arguments[arguments.len() - 2], allowed]);
@@ -485,6 +487,43 @@ fn every_command_makes_the_folders_it_writes_into() {
         let last = all.len() - 1;
         all[last] = &blocked;
         refused(&folder, &all, &[&blocked, "cannot be written"]);
+    }
+}
+
+#[test]
+fn what_is_read_is_not_written_over() {
+    let folder = Folder::new("over");
+    folder.write("scene.toml", SCENE);
+    folder.write("points.csv", "x,y\n0.1,0.2\n");
+    folder.write("a.csv", motion(200, 1.0));
+    folder.write("foreign.yml", FOREIGN);
+    for (arguments, file) in [
+        (&["learn", "a.csv"][..], "a.csv"),
+        (&["import", "foreign.yml"], "./foreign.yml"),
+        (&["eval", "scene.toml", "--points", "points.csv"], "points.csv"),
+        (&["eval", "scene.toml", "--points", "points.csv"], "scene.toml"),
+    ] {
+        let before = fs::read(folder.0.join(file)).unwrap();
+        let mut all = arguments.to_vec();
+        all.extend(["-o", file]);
+        refused(&folder, &all, &[file, "would be written over"]);
+        assert_eq!(fs::read(folder.0.join(file)).unwrap(), before);
+    }
+    // A model to which a demonstration is added is written anew: that is what was asked for.
+    let learn = |more: &[&str]| {
+        let mut all = vec!["learn", "a.csv", "-o", "m.toml", "--components", "2", "--no-figure"];
+        all.extend(more);
+        folder.run(&all).code
+    };
+    assert_eq!((learn(&[]), learn(&["--add-to", "m.toml"])), (Some(0), Some(0)));
+}
+
+#[test]
+fn a_model_is_no_scene() {
+    let folder = Folder::new("model-as-scene");
+    folder.write("m.toml", fs::read_to_string(root().join("models/sbend.toml")).unwrap());
+    for command in ["run", "plot"] {
+        refused(&folder, &[command, "m.toml"], &["m.toml", "a model", "[ds]"]);
     }
 }
 

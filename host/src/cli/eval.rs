@@ -55,6 +55,9 @@ impl StageName {
 
 pub(super) fn main(args: &Args, json: bool) -> Finished {
     let scene = super::scene(Some(&args.scene))?;
+    if let Some(out) = &args.out {
+        output::spare(out, [args.scene.as_path(), args.points.as_path()])?;
+    }
     let points = Points::read(&args.points, scene.dimension())?;
     let rows = match &args.device {
         None => evaluate(&scene, &points, args.stage.stage())?,

@@ -11,6 +11,7 @@ use super::{Finished, number, print_json, progress, warn};
 use crate::error::{Error, Outcome, counted};
 use crate::learn::{Demonstrations, Learnt, Options, Unit, learn_from, memory, read};
 use crate::model::ModelFile;
+use crate::output;
 use crate::plot::{self, Portrait};
 
 /// Options of `pliant learn`.
@@ -139,6 +140,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     if let Some(figure) = &figure {
         plot::check_format(figure)?;
     }
+    output::spare(&out, args.demos.iter().map(PathBuf::as_path))?;
     let options = Options {
         name,
         unit: args.unit,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde_json::json;
 
-use super::{Finished, Point, print_json};
+use super::{Finished, Point, number, print_json};
 use crate::error::{Error, Outcome};
 use crate::learn::memory;
 use crate::model::{Provenance, Similarity, Text};
@@ -28,14 +28,22 @@ pub struct Args {
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, requires = "start")]
     from: Option<Point>,
     /// How many times as large it is to be, 0.001 to 1000.
-    #[arg(long, value_name = "FACTOR")]
+    #[arg(long, value_name = "FACTOR", value_parser = factor)]
     scale: Option<f64>,
     /// Turn it about the attractor, counter-clockwise, degrees.
-    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, value_parser = degrees)]
     turn: Option<f64>,
     /// In space, the axis to turn about (z if not given).
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "turn")]
     axis: Option<Point>,
+}
+
+fn degrees(text: &str) -> Result<f64, String> {
+    number::within(text, -1e6..=1e6, "a number of degrees, such as 90 or -45")
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    number::within(text, 1e-3..=1e3, "0.001 to 1000")
 }
 
 pub(super) fn main(args: &Args, json: bool) -> Finished {

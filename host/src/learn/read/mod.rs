@@ -33,11 +33,8 @@ pub fn recordings(paths: &[PathBuf], unit: Option<Unit>) -> Result<Vec<Demonstra
     let mut items = Vec::new();
     for path in paths {
         let file = path.display().to_string();
-        if !path.exists() {
-            return Err(LearnError::Unreadable { file, problem: std::io::ErrorKind::NotFound.into() });
-        }
-        if path.is_dir() {
-            let unreadable = |problem| LearnError::Unreadable { file: file.clone(), problem };
+        let unreadable = |problem| LearnError::Unreadable { file: file.clone(), problem };
+        if fs::metadata(path).map_err(unreadable)?.is_dir() {
             let mut inside = Vec::new();
             for entry in fs::read_dir(path).map_err(unreadable)? {
                 let entry = entry.map_err(unreadable)?.path();
