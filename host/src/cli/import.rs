@@ -33,8 +33,8 @@ pub struct Args {
 pub(super) fn main(args: &Args, json: bool) -> Finished {
     let stem = args.file.file_stem().map_or("imported".into(), |s| s.to_string_lossy().to_lowercase());
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.toml")));
-    output::spare(&out, [args.file.as_path()])?;
     let mut found = import(&args.file, Layout { unit: Some(args.unit), order: args.order, means: args.means })?;
+    output::spare(&out, [args.file.as_path()])?;
     let source = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     found.model.learnt = Some(Provenance { imported: Some(source), ..Provenance::default() });
     memory::note(&mut found.model, &out, &[], &found.starts);
