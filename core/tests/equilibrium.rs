@@ -6,6 +6,7 @@ mod world;
 use num_traits::Zero;
 use pliant_core::scalar::Fixed;
 use pliant_core::{Region, RobotState, Scalar, Vector};
+use world::judge::Asked;
 use world::scene::{PLACES, STILL, controller, place, some, with_flow};
 use world::{Kind, is_long, motion, numbers, on_grid, random, share, vector};
 
@@ -41,10 +42,9 @@ fn attractor_rests<S: Scalar, const D: usize>(seed: u64) {
                 Region::Hard => tally.hard += 1,
                 Region::Free => {}
             }
-            // Nearer the guard may hold a skin of 15 um: the thinnest body is 30 mm thick and p = 3 at most, so that Gamma = 1.01 is
-            // 50 um out.
-            if stages.gamma > S::from_f64(1.01) {
-                let command = controller.tick(&state, S::from_f64(0.001));
+            // Within the guard's skin it may be pushed out.
+            let command = controller.tick(&state, S::from_f64(0.001));
+            if Asked::new(&controller, &state, 0.001).may_stand {
                 assert_eq!(command.velocity, Vector::<S, D>::zero(), "{command:?} {controller:?}");
                 tally.ticked += 1;
             }

@@ -3,18 +3,18 @@
 //! One module a task or a concept: [`setup`] (what the machine must have), [`checks`] (the steps of
 //! `test`), [`tally`] (test counts out of cargo's output), [`size`] over [`image`] (what the firmware
 //! takes), [`no_panic`] over [`callers`] (that the tick cannot panic), [`campaign`], [`speed`] (its task is `bench`), [`fuzz`],
-//! [`demos`]; beneath them [`workspace`] starts commands and [`failure`] is what goes wrong, as one sentence.
+//! [`models`]; beneath them [`workspace`] starts commands and [`failure`] is what goes wrong, as one sentence.
 
 #![forbid(unsafe_code)]
 
 mod callers;
 mod campaign;
 mod checks;
-mod demos;
 mod deny;
 mod failure;
 mod fuzz;
 mod image;
+mod models;
 mod no_panic;
 mod setup;
 mod size;
@@ -40,7 +40,7 @@ Tasks:
   size [--json]           text, data, bss and stack of the firmware
   fuzz [--seconds N]      run every fuzz target, N seconds each (600 by default)
   deny                    check licences, bans and sources; installs cargo-deny if missing
-  demos                   write demos/ and models/ anew
+  models                  learn models/ anew from demos/
   help                    this text
 ";
 
@@ -67,7 +67,7 @@ fn run(arguments: &[String]) -> Result<(), Failure> {
         ["no-panic"] => no_panic::run(&Workspace::locate()?),
         ["fuzz", options @ ..] => fuzz::run(&Workspace::locate()?, fuzz::seconds(options)?),
         ["deny"] => deny::install_and_check(&Workspace::locate()?),
-        ["demos"] => demos::run(&Workspace::locate()?),
+        ["models"] => models::run(&Workspace::locate()?),
         [] | ["help" | "--help" | "-h"] => {
             print!("{USAGE}");
             Ok(())

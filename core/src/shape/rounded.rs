@@ -1,7 +1,7 @@
 //! Boxes, cylinders and capsules: a smaller body with everything within a radius r of it, so that normals turn without a jump.
 
 use super::{Place, Surface, first_axis};
-use crate::{Scalar, Vector};
+use crate::{Scalar, Vector, is_zero, unit};
 
 /// A box (or, about the third axis, a cylinder) with semi-extents `half`, and everything within `radius` of it.
 ///
@@ -11,7 +11,14 @@ use crate::{Scalar, Vector};
 /// sum_i max(t_i - lambda h_i, 0)^2 = (lambda r)^2,   t_i = |u_i|, or for a cylinder t = (|(u_1, u_2)|, |u_3|)
 /// ```
 ///
-/// a quadratic equation once it is known which terms are positive: i is not where the left side, at lambda = t_i/h_i, is still larger.
+/// a quadratic equation once it is known which terms are positive: i is not where the left side, at lambda = t_i/h_i, is still larger. With t and h cut
+/// to the terms that are, and c = t/|t|, its root is
+///
+/// ```text
+/// lambda = |t| / (c.h + sqrt(r^2 - |c x h|^2))
+/// ```
+///
+/// in which nothing is lost where r is small: the usual discriminant is the difference of two far larger numbers there.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Rounded<S: Scalar, const D: usize> {
     half: Vector<S, D>,
@@ -48,34 +55,30 @@ impl<S: Scalar, const D: usize> Rounded<S, D> {
         let zero = S::zero();
         let t = self.distances(u);
         let across = t[0];
-        let h = &self.half;
+        let (h, r) = (&self.half, self.radius);
         let counts = Vector::<S, D>::from_fn(|i, _| {
-            let beyond = (0..D).fold(zero, |sum, j| {
-                let e = (t[j] * h[i] - t[i] * h[j]).max(zero);
-                sum + e * e
-            });
-            let reach = t[i] * self.radius;
-            if beyond <= reach * reach { S::one() } else { zero }
+            let beyond: [S; D] = core::array::from_fn(|j| (t[j] * h[i] - t[i] * h[j]).max(zero));
+            if S::norm(&beyond) <= t[i] * r { S::one() } else { zero }
         });
-        let (th, tt, hh) =
-            (t.component_mul(&counts), t.dot(&t.component_mul(&counts)), h.component_mul(&counts).dot(h));
-        let b = th.dot(h);
-        let r = self.radius;
-        // b^2 - a c is never negative but by rounding.
-        let root = (b * b - (hh - r * r) * tt).max(zero).sqrt();
-        if !(b + root > zero) {
+        let (length, c) = unit(&t.component_mul(&counts));
+        let k = h.component_mul(&counts);
+        let aside = aside(&c, &k);
+        let reach = S::dot(c.as_slice(), k.as_slice()) + S::other_leg(r, aside.min(r));
+        if !(length > zero && reach > zero) {
             return Gauge { lambda: zero, gradient: Vector::zeros() };
         }
-        let lambda = tt / (b + root);
+        let lambda = length / reach;
+        // The smaller body's nearest point sees u along the normal n, and the plane across n that touches the body is h.n + r away.
         let outward = Vector::<S, D>::from_fn(|i, _| (t[i] - lambda * h[i]).max(zero) * counts[i]);
-        let slope = S::one() / (outward.dot(h) + lambda * r * r);
+        let (_, normal) = unit(&outward);
+        let slope = S::one() / (S::dot(normal.as_slice(), h.as_slice()) + r);
         let gradient = Vector::from_fn(|i, _| {
             let along = if self.turned && i < 2 {
-                if across > zero { outward[0] * (u[i] / across) } else { zero }
+                if across > zero { normal[0] * (u[i] / across) } else { zero }
             } else if u[i] < zero {
-                -outward[i]
+                -normal[i]
             } else {
-                outward[i]
+                normal[i]
             };
             along * slope
         });
@@ -106,7 +109,8 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Rounded<S, D> {
             return self.keep_in(at, keep);
         }
         let Gauge { lambda, gradient } = self.gauge(&at.u);
-        if lambda > S::zero() {
+        // Near the centre the edges' radius may have no digits, and the normal none.
+        if lambda > S::zero() && !is_zero(&gradient) {
             keep(gradient.component_mul(at.inverse), lambda - S::one());
         } else {
             keep(first_axis(at.inverse[0]), -(self.half[0] + self.radius));
@@ -176,4 +180,10 @@ impl<S: Scalar, const D: usize> Rounded<S, D> {
             _ => u[i].abs(),
         })
     }
+}
+
+/// |c x h|: how far the ray along c passes the point h.
+fn aside<S: Scalar, const D: usize>(c: &Vector<S, D>, h: &Vector<S, D>) -> S {
+    let between = |i: usize, j: usize| S::dot(&[c[i], -c[j]], &[h[j], h[i]]);
+    if D == 2 { between(0, 1).abs() } else { S::norm(&[between(0, 1), between(1, 2), between(2, 0)]) }
 }

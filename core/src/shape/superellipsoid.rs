@@ -10,6 +10,18 @@ pub(crate) struct Superellipsoid {
 }
 
 impl Superellipsoid {
+    /// p, as a number.
+    fn powers<S: Scalar>(&self) -> S {
+        (0..self.p).fold(S::zero(), |sum, _| sum + S::one())
+    }
+
+    /// What a displacement of this length may add to the tangent of gamma, which is convex with second derivatives up to 2p(2p - 1) within the surface;
+    /// and a fifth of that more.
+    fn bend<S: Scalar>(&self, stride: S) -> S {
+        let p = self.powers::<S>();
+        S::from_f64(1.2) * p * (p + p - S::one()) * stride * stride
+    }
+
     /// The largest w.u of all u inside, or somewhat more: as for the ball and the box that hold it.
     pub fn support<S: Scalar, const D: usize>(&self, w: &Vector<S, D>) -> S {
         let length = S::norm(w.as_slice());
@@ -44,25 +56,19 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
         let shortest = one / steepest;
         // Scaled, so that high powers of thin axes stay within range; only the direction counts.
         let normal = |slopes: Vector<S, D>| slopes.zip_map(at.inverse, |slope, inverse| slope * (inverse * shortest));
-        if at.wall {
-            // gamma is convex with second derivatives up to 2p(2p - 1) within the surface (a fifth more just beyond): what a step may add
-            // to its tangent.
-            let p = (0..self.p).fold(S::zero(), |sum, _| sum + one);
-            let bound = S::from_f64(1.2);
-            let u = at.u.map(|u| u.max(-bound).min(bound));
-            let gamma = u.iter().fold(S::zero(), |sum, u| sum + (*u * *u).powi(self.p));
+        let within = |gamma: &S| *gamma < one;
+        let gamma = || at.u.iter().fold(S::zero(), |sum, u| sum + (*u * *u).powi(self.p));
+        if let Some(gamma) = at.wall.then(gamma).filter(within) {
             let stride = at.step * steepest;
-            let bend = bound * p * (p + p - one) * stride * stride;
-            let gap = one - gamma - bend;
-            if gap >= S::zero() || gamma >= one {
-                let unit = shortest * S::from_f64(0.5) / p;
-                keep(normal(u.map(|u| -slope(u, self.p))), gap * unit);
+            let gap = one - gamma - self.bend(stride);
+            if gap >= S::zero() {
+                let unit = shortest * S::from_f64(0.5) / self.powers();
+                keep(normal(at.u.map(|u| -slope(u, self.p))), gap * unit);
                 return;
             }
             // A step is longer than the bend allows: |delta_i| <= s, with s times the gauge of (1, 1, ...) what the gauge of u lacks to one, for
             // no gauge of a sum is more than the sum of the gauges.
-            let all = Vector::<S, D>::repeat(one);
-            let room = (one - root(gamma, self.p)) / root(all.iter().fold(S::zero(), |sum, _| sum + one), self.p);
+            let room = (one - root(gamma, self.p)) / root(at.u.iter().fold(S::zero(), |sum, _| sum + one), self.p);
             for i in 0..D {
                 let side = |sign: S| Vector::from_fn(|j, _| if i == j { sign } else { S::zero() });
                 keep(normal(side(-one)), room * shortest);
@@ -79,6 +85,14 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
         let t = at.u / largest;
         let level = t.iter().fold(S::zero(), |sum, t| sum + (*t * *t).powi(self.p));
         let gauge = largest * root(level, self.p);
+        if at.wall {
+            // Where the ray leaves it the tangent is off by what bends on the way back to there and within the step.
+            let y = at.u / gauge;
+            let bend = self.bend(at.step * steepest + S::norm((at.u - y).as_slice()));
+            let unit = shortest * S::from_f64(0.5) / self.powers();
+            keep(normal(y.map(|u| -slope(u, self.p))), (one - gauge) * shortest - bend * unit);
+            return;
+        }
         let slopes = t.map(|t| slope(t, self.p));
         keep(normal(slopes), slopes.dot(&t) * (gauge - one) * (largest / gauge) * shortest);
     }

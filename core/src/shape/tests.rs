@@ -117,6 +117,48 @@ fn kept_out<const D: usize>(
     Ok(kept)
 }
 
+/// The one half-space of a rounded body in numbers S, at the point so far (m) beyond its surface along `way`; and in f64, of the same numbers.
+fn gaps<S: Scalar, const D: usize>(shape: [f64; D], rounding: f64, way: [f64; D], beyond: f64) -> [f64; 2] {
+    let half = Vector::from(shape).map(S::from_f64);
+    let least = half.iter().fold(S::MAX, |m, x| m.min(*x));
+    // No shorter in f64 either.
+    let rounding = S::from_f64(rounding).max(S::MIN_AXIS * S::from_f64(1.01)).min(least);
+    let spec = ObstacleSpec { shape: Shape::Box { half, rounding }, ..ObstacleSpec::<S, D>::default() };
+    let exact = Shape::Box { half: half.map(Scalar::to_f64), rounding: rounding.to_f64() };
+    let exact = Obstacle::new(ObstacleSpec { shape: exact, ..ObstacleSpec::<f64, D>::default() }).unwrap();
+    let way = unit(way);
+    let x = (exact.surface(&way) + way * beyond).map(S::from_f64);
+    [gap(&Obstacle::new(spec).unwrap(), &x).to_f64(), gap(&exact, &x.map(Scalar::to_f64))]
+}
+
+fn gap<S: Scalar, const D: usize>(o: &Obstacle<S, D>, x: &Vector<S, D>) -> S {
+    let (one, mut gap) = (S::one(), S::MAX);
+    let from = Outlook { at: x, wish: &Vector::zeros(), step: S::from_f64(0.01), reach: one, share: one };
+    o.keep_out(&from, |_, found| gap = gap.min(found));
+    gap
+}
+
+proptest! {
+    /// Half of the guard's skin is more than rounding makes of the distance from a body, however sharp its edges or thin it is.
+    #[test]
+    fn sharp_edges_and_thin_bodies_keep_their_distances(
+        half in [0.004..0.5f64, 0.004..0.5, 0.004..0.5], share in -3.0..0.0f64, way in [-1.0..1.0f64, -1.0..1.0, -1.0..1.0],
+        beyond in -1e-3..1e-3f64,
+    ) {
+        let rounding = half.iter().fold(1.0f64, |m, x| m.min(*x)) * libm::pow(10.0, share);
+        let (flat, plane) = ([half[0], half[1]], [way[0], way[1]]);
+        let most = 8.0 * crate::Fixed::EPSILON.to_f64();
+        for [found, exact] in [
+            gaps::<crate::Fixed, 2>(flat, rounding, plane, beyond),
+            gaps::<crate::Fixed, 3>(half, rounding, way, beyond),
+            gaps::<f32, 2>(flat, rounding, plane, beyond),
+            gaps::<f32, 3>(half, rounding, way, beyond),
+        ] {
+            prop_assert!((found - exact).abs() <= most, "{found} is {exact}");
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(3000))]
 

@@ -1,13 +1,12 @@
 //! No core is ever entered while the guard says that it need not be, and it never says that it must where it need not.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
-mod judge;
 #[path = "../world/mod.rs"]
 mod world;
 
-use judge::Asked;
 use pliant_core::scalar::Fixed;
 use pliant_core::{RobotState, Scalar, Status};
+use world::judge::Asked;
 use world::{Kind, World, gamma, is_long, share, world};
 
 /// Ticks of one world.

@@ -9,6 +9,7 @@ use pliant_core::{
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+pub mod judge;
 pub mod scene;
 
 pub type Random = ChaCha8Rng;
@@ -228,16 +229,19 @@ pub fn settings<S: Scalar>(r: &mut Random) -> Settings<S> {
 }
 
 pub struct World<S: Scalar, const D: usize> {
-    pub controller: Controller<S, D, 32>,
+    pub controller: Controller<S, D, 40>,
     pub start: Vector<f64, D>,
 }
 
 /// A controller among obstacles, and a start outside of all cores if one was found.
 pub fn world<S: Scalar, const D: usize>(seed: u64, kind: &Kind) -> Option<World<S, D>> {
     let r = &mut random(seed);
-    let mut controller: Controller<S, D, 32> = Controller::new(motion(r), settings(r));
+    let mut controller: Controller<S, D, 40> = Controller::new(motion(r), settings(r));
     if kind.walls && r.random_bool(0.25) {
-        controller.upsert(1000, wall(r, kind.odd), S::zero()).unwrap();
+        let walls = if kind.odd && r.random_bool(0.4) { r.random_range(2..=3) } else { 1 };
+        for n in 0..walls {
+            controller.upsert(1000 + n, wall(r, kind.odd), S::zero()).unwrap();
+        }
     }
     for id in 0..r.random_range(1..=kind.obstacles) {
         if let Some(o) = obstacle(r, kind) {

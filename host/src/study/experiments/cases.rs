@@ -6,9 +6,9 @@ use crate::study::skill::{Skill, Skills};
 use crate::study::world::{Body, World};
 
 /// Where A's cylinder is: at this share of the path, this far to its left, m.
-pub const A_PLACE: (f64, f64) = (0.62, 0.01);
+pub const A_PLACE: (f64, f64) = (0.65, 0.02);
 /// Where B's pair is: at this share of the path, cores this far apart, m, the cylinder to the left (1) or right (-1).
-pub const B_PLACE: (f64, f64, f64) = (0.37, 0.02, -1.0);
+pub const B_PLACE: (f64, f64, f64) = (0.41, 0.0125, -1.0);
 /// How far apart B2's hard pair is moved, so that there is a way between, m.
 const B2_GAP: f64 = 0.03;
 /// What the perception of D1 is like: m, and ticks (ms).

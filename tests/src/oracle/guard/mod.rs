@@ -124,12 +124,16 @@ pub fn half_spaces(next: &OracleScene, x: &[f64], wanted: &[f64], dt: f64) -> Re
                 if body.wall && steep == 0.0 {
                     // The curve is as far as it can be.
                 } else if body.wall {
-                    let steepest = step / axes.component_mul(&body.hard).min();
+                    // From the surface on, where x is beyond it.
+                    let on = &body.center + (&x - &body.center) / body.gauge(&x).max(1.0);
+                    let past = length(&(body.scaled_hard(&x) - body.scaled_hard(&on)).component_div(axes));
+                    let steepest = step / axes.component_mul(&body.hard).min() + past;
                     let bend = 1.2 * 0.5 * exponent * (exponent - 1.0) * steepest.powi(2);
-                    let left = 1.0 - body.plain_gamma(&x) - bend;
+                    let slope = body.plain_gradient(&on);
+                    let left = 1.0 - body.plain_gamma(&on) - slope.dot(&(&x - &on)) - bend;
                     // A step too long for the bend.
-                    complete &= left >= 0.0 || left + bend <= 0.0;
-                    push(n, &body.normal(&x), left / steep);
+                    complete &= left >= 0.0 || body.plain_gamma(&x) >= 1.0;
+                    push(n, &body.normal(&on), left / length(&slope));
                 } else if steep == 0.0 {
                     complete = false;
                 } else {

@@ -1,6 +1,9 @@
 //! Along random lines the velocity has no jump, at shells, overlaps or anywhere else outside of cores; and what jumps is found.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
+mod bounds;
+mod turning;
+#[path = "../world/mod.rs"]
 mod world;
 
 use pliant_core::scalar::Fixed;
@@ -17,11 +20,6 @@ const POINTS: u32 = 200;
 const STEP: f64 = 1e-3;
 /// Closer to a core than this Gamma the weights of overlapping cores become as steep as one likes: 1/(Gamma - 1).
 const NEAREST: f64 = 1.05;
-/// A bound on the slope, 1/s. Across a shell the push rises from 0 to 1 m/s while Gamma_k falls by 0.1, and the slope of Gamma_k is 2p/a <= 6/0.045
-/// on the thinnest body: 1330. Between two cores the weights turn from one to the other while Gamma - 1 doubles, by at most 6/0.045/(4 * 0.05) = 670 a
-/// metre, of velocities
-/// that differ by |f| or so; with several at a time, and f of up to 5 m/s, no more than:
-const SLOPE: f64 = 4000.0;
 
 struct Line<'a, S: Scalar, const D: usize> {
     controller: &'a Controller<S, D, 16>,
@@ -30,48 +28,43 @@ struct Line<'a, S: Scalar, const D: usize> {
 }
 
 impl<S: Scalar, const D: usize> Line<'_, S, D> {
-    fn velocity(&self, along: f64) -> Option<Vector<f64, D>> {
+    /// As modulated, and as adapted, m/s.
+    fn velocity(&self, along: f64) -> Option<[Vector<f64, D>; 2]> {
         let stages = self.controller.evaluate(&RobotState::new((self.from + self.way * along).map(S::from_f64))?);
         // Where g.r vanishes, as beside a polygon whose shared reference point does not see all of it, the method has a pole: ten times as fast as f is
         // near it, and the status says where it is.
         let (f, u) = (numbers(&stages.nominal).norm(), numbers(&stages.modulated).norm());
         let pole = stages.status.contains(Status::REFERENCE) || u > 10.0 * (f + 1.0);
-        (stages.gamma.to_f64() > NEAREST && !pole).then(|| numbers(&stages.adapted))
+        (stages.gamma.to_f64() > NEAREST && !pole).then(|| [numbers(&stages.modulated), numbers(&stages.adapted)])
     }
 
-    /// A bound on the slope here, 1/s: where a reference point is seen slantingly (a shared one, a tree's, or a polygon's) the flow past its obstacle goes
-    /// with |g| |r| / (g.r), and the slope with its square.
-    fn slope(&self, along: f64) -> f64 {
-        let x = (self.from + self.way * along).map(S::from_f64);
-        let slant = |o: &Obstacle<S, D>| {
-            let (g, r) = (numbers(&o.gradient(&x)), numbers(&(x - o.reference())));
-            // In a tree r leans towards the root's reference point by a share of h, which depends on where x is, down to a tenth of g.r.
-            let h = o.hub().map_or_else(Vector::zeros, |hub| numbers(&(hub - o.reference())));
-            let left = (g.dot(&r) - g.dot(&h)).max(0.1 * g.dot(&r)).min(g.dot(&r));
-            g.norm() * (r.norm() + h.norm()) / left.max(1e-9)
-        };
-        // In fixed point the gradient itself does not fit far from a superellipsoid, of which nothing is seen slantingly.
-        let fits = |o: &&Obstacle<S, D>| o.gradient(&x).iter().all(|g| g.abs() < S::from_f64(2047.0));
-        let present = self.controller.table().iter().map(|e| e.obstacle()).filter(|o| o.gamma(&x) < S::FAR);
-        let most = present.filter(fits).map(slant).fold(1.0, f64::max);
-        SLOPE * most * most
-    }
-
-    /// The change that is left, m/s, of the steepest interval halved again and again, each time taking the half that changes more: of a
-    /// continuous velocity nothing, of a jump all of it.
-    fn jump(&self, mut low: f64, mut high: f64, closest: f64) -> Option<f64> {
+    /// Halves an interval again and again, each time taking the half in which one of the two changes more: what change is left, of a continuous velocity
+    /// nothing, of a jump all of it; over the bound on that. And the largest bound on the slope on the way into `steepest`.
+    fn jump(&self, of: usize, mut low: f64, mut high: f64, steepest: &mut f64) -> Option<Jump> {
         let (mut at_low, mut at_high) = (self.velocity(low)?, self.velocity(high)?);
-        while high - low > closest {
+        loop {
+            let changes = [0, 1].map(|i| (at_high[i] - at_low[i]).norm());
+            let slope = self.slope([low, high], changes[0] / (high - low))[of];
+            *steepest = steepest.max(slope);
+            if high - low <= closest::<S>() {
+                return Some(Jump { change: changes[of], of_bound: changes[of] / (slope * interval::<S>()) });
+            }
             let middle = (low + high) * 0.5;
             let at_middle = self.velocity(middle)?;
-            if (at_middle - at_low).norm() > (at_high - at_middle).norm() {
+            if (at_middle[of] - at_low[of]).norm() > (at_high[of] - at_middle[of]).norm() {
                 (high, at_high) = (middle, at_middle);
             } else {
                 (low, at_low) = (middle, at_middle);
             }
         }
-        Some((at_high - at_low).norm())
     }
+}
+
+/// What is left of a change, m/s, and over its bound.
+#[derive(Default)]
+struct Jump {
+    change: f64,
+    of_bound: f64,
 }
 
 #[derive(Default, Debug)]
@@ -88,14 +81,14 @@ struct Found {
 }
 
 impl Found {
-    /// Looks closer at the step that ends here, over which the velocity changes by so much.
-    fn look<S: Scalar, const D: usize>(&mut self, line: &Line<'_, S, D>, along: f64, change: f64) {
+    /// Looks closer at the step that ends here, over which one of the two velocities changes by so much.
+    fn look<S: Scalar, const D: usize>(&mut self, line: &Line<'_, S, D>, of: usize, along: f64, change: f64) {
         if change > 0.0 {
-            let allowed = line.slope(along);
-            let jump = line.jump(along - STEP, along, closest::<S>()).unwrap_or(0.0);
-            self.jump = self.jump.max(jump);
-            self.jump_of_bound = self.jump_of_bound.max(jump / (allowed * interval::<S>()));
-            self.slope_of_bound = self.slope_of_bound.max(change / STEP / allowed);
+            let mut steepest = 0.0;
+            let jump = line.jump(of, along - STEP, along, &mut steepest).unwrap_or_default();
+            self.jump = self.jump.max(jump.change);
+            self.jump_of_bound = self.jump_of_bound.max(jump.of_bound);
+            self.slope_of_bound = self.slope_of_bound.max(change / STEP / steepest);
         }
     }
 }
@@ -115,7 +108,7 @@ fn along_lines<S: Scalar, const D: usize>(seed: u64, kind: &Kind, steering: Stee
         for _ in 0..5 {
             let line = line(r, &controller, &obstacles);
             let (mut last, mut layers) = (None, 0);
-            let (mut steepest, mut at) = (0.0, 0.0);
+            let mut steepest = [(0.0, 0.0); 2];
             for i in 0..POINTS {
                 let along = STEP * f64::from(i);
                 let here = line.velocity(along);
@@ -123,19 +116,23 @@ fn along_lines<S: Scalar, const D: usize>(seed: u64, kind: &Kind, steering: Stee
                 let x = (line.from + line.way * along).map(S::from_f64);
                 let now = obstacles.iter().filter(|o| o.gamma_soft(&x) <= S::one()).count();
                 if let (Some(last), Some(here)) = (last, here) {
-                    let change: f64 = (here - last as Vector<f64, D>).norm();
-                    if change > steepest {
-                        (steepest, at) = (change, along);
+                    let changes: [f64; 2] = [0, 1].map(|of| (here[of] - (last as [Vector<f64, D>; 2])[of]).norm());
+                    for of in [0, 1] {
+                        if changes[of] > steepest[of].0 {
+                            steepest[of] = (changes[of], along);
+                        }
                     }
                     if now != layers {
                         found.shells += 1;
                         found.overlaps += u64::from(now.max(layers) > 1);
-                        found.look(&line, along, change);
+                        found.look(&line, 1, along, changes[1]);
                     }
                 }
                 (last, layers) = (here, now);
             }
-            found.look(&line, at, steepest);
+            for (of, (change, along)) in steepest.into_iter().enumerate() {
+                found.look(&line, of, along, change);
+            }
         }
     }
     println!("{D}-D {:e} m: {found:?}", closest::<S>());
@@ -154,7 +151,7 @@ fn line<'a, S: Scalar, const D: usize>(
     Line { controller, from: from - way * (0.5 * STEP * f64::from(POINTS)), way }
 }
 
-/// The shortest interval, and what rounding does to both its ends, m: that acts as a displacement by some units. Times [`SLOPE`] it is
+/// The shortest interval, and what rounding does to both its ends, m: that acts as a displacement by some units. Times [`bounds::SLOPE`] it is
 /// the least jump that is seen: 4e-7 m/s in f64, 0.06 in f32, 0.5 in fixed point.
 fn interval<S: Scalar>() -> f64 {
     closest::<S>() + 64.0 * S::EPSILON.to_f64()

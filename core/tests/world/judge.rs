@@ -1,7 +1,7 @@
 //! Was there really no velocity? Section 7 of docs/method.md once more, in f64 and from what is public: what every core of the next sample asks of
 //! the velocity, as far as there is no choice in it.
 
-use crate::world::numbers;
+use super::numbers;
 use pliant_core::{Controller, Obstacle, RobotState, Scalar, Shape, Vector};
 
 /// n.u >= offset, m/s.
@@ -31,7 +31,11 @@ struct Rounding {
 impl<const D: usize> Asked<D> {
     /// By `controller` after its tick at `state`: then its obstacles are those of the next sample. Every demand is made a little stronger than the
     /// guard's, by what rounding may have done to that.
-    pub fn new<S: Scalar>(controller: &Controller<S, D, 32>, state: &RobotState<S, D>, dt: f64) -> Self {
+    pub fn new<S: Scalar, const CAP: usize>(
+        controller: &Controller<S, D, CAP>,
+        state: &RobotState<S, D>,
+        dt: f64,
+    ) -> Self {
         let x = numbers(state.position());
         let settings = controller.settings();
         let (speed, alpha) = (settings.limits.speed.to_f64(), settings.guard.map_or(1.0, |g| g.approach.to_f64()));
@@ -144,7 +148,7 @@ fn supporting<S: Scalar, const D: usize>(o: &Obstacle<S, D>, x: &Vector<S, D>) -
 }
 
 /// A polygon's corners in the world, m.
-fn corners<S: Scalar, const D: usize>(o: &Obstacle<S, D>, vertices: &[[S; 2]]) -> Vec<Vector<f64, D>> {
+pub fn corners<S: Scalar, const D: usize>(o: &Obstacle<S, D>, vertices: &[[S; 2]]) -> Vec<Vector<f64, D>> {
     let corner = |v: &[S; 2]| {
         let way = o.spec().rotation * Vector::<S, D>::from_fn(|i, _| v[i.min(1)]);
         numbers(&o.surface(&way))
