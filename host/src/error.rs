@@ -140,6 +140,11 @@ fn write_report(
     }
 }
 
+/// A number of things: `1 field`, `2 fields`.
+pub fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
 impl<E: Diagnostic + Send + Sync + 'static> From<E> for Error {
     fn from(diagnostic: E) -> Self {
         Self { exit: BAD_INPUT, diagnostic: Box::new(diagnostic) }

@@ -8,7 +8,7 @@ use pliant_protocol::ToDevice;
 use pliant_protocol::message::{self, TickMode};
 
 use crate::bridge::{BridgeError, Session, wire};
-use crate::error::Error;
+use crate::error::{Error, counted};
 use crate::scene::{ConvertError, MAX_OBSTACLES, Scene};
 use crate::sim;
 
@@ -59,33 +59,49 @@ impl Points {
     /// The line and what is wrong with it.
     pub fn read(path: &Path, dimension: usize) -> Result<Self, Error> {
         let file = path.display();
-        let bad = |line: Option<u64>, what: String| {
-            Error::bad_input(line.map_or(format!("{file}: {what}"), |line| format!("{file}, line {line}: {what}")))
+        let bytes = std::fs::read(path).map_err(|e| Error::bad_input(format!("{file}: cannot be read: {e}")))?;
+        Self::parse(&bytes, dimension).map_err(|(line, what)| Error::bad_input(format!("{file}, line {line}: {what}")))
+    }
+
+    /// The line at fault, from 1, and what is wrong with it.
+    fn parse(bytes: &[u8], dimension: usize) -> Result<Self, (u64, String)> {
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(bytes);
+        // Of a flexible reader in memory that is all that can go wrong.
+        let broken = |e: csv::Error| {
+            (
+                e.position().map_or(1, csv::Position::line),
+                "it is not UTF-8 text; allowed are comma-separated numbers".into(),
+            )
         };
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .from_path(path)
-            .map_err(|e| bad(None, format!("cannot be read: {e}")))?;
         let axes = &["x", "y", "z"][..dimension];
-        let header = reader.headers().map_err(|e| bad(Some(1), e.to_string()))?;
+        let wanted = format!("a scene of {dimension} dimensions wants the header `{}`", axes.join(","));
+        let header = reader.headers().map_err(broken)?;
+        if header.iter().all(str::is_empty) {
+            return Err((1, format!("the file is empty; {wanted}")));
+        }
         if header.iter().ne(axes.iter().copied()) {
-            let found = header.iter().collect::<Vec<_>>().join(",");
-            return Err(bad(
-                Some(1),
-                format!("the header is `{found}`; a scene of {dimension} dimensions wants `{}`", axes.join(",")),
-            ));
+            let found: String = header.iter().collect::<Vec<_>>().join(",").chars().take(60).collect();
+            return Err((1, format!("the header is `{found}`; {wanted}")));
         }
         let mut points = Vec::new();
         for record in reader.records() {
-            let record = record.map_err(|e| bad(e.position().map(csv::Position::line), e.to_string()))?;
-            let line = record.position().map(csv::Position::line);
+            let record = record.map_err(broken)?;
+            let line = record.position().map_or(1, csv::Position::line);
+            if record.len() != dimension {
+                let found = counted(record.len(), "field");
+                return Err((line, format!("it has {found}; allowed is one for each of `{}`", axes.join(","))));
+            }
             let mut point = Vector3::zeros();
             for ((entry, text), axis) in point.iter_mut().zip(&record).zip(axes) {
                 *entry = text.parse().ok().filter(|x: &f64| x.abs() <= RANGE).ok_or_else(|| {
-                    bad(line, format!("`{axis}` is `{text}`; allowed is a number between -{RANGE} and {RANGE} (m)"))
+                    (line, format!("`{axis}` is `{text}`; allowed is a number between -{RANGE} and {RANGE} (m)"))
                 })?;
             }
             points.push(point);
+        }
+        if points.is_empty() {
+            return Err((1, "there are no points below the header; allowed is one or more".into()));
         }
         Ok(Self(points))
     }
@@ -196,4 +212,45 @@ fn status_names(status: Status) -> String {
         return "ok".into();
     }
     status.iter_names().map(|(name, _)| name.to_lowercase()).collect::<Vec<_>>().join("+")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn refused(text: &[u8]) -> (u64, String) {
+        Points::parse(text, 2).expect_err("must be refused")
+    }
+
+    #[test]
+    fn points_are_read_or_the_line_is_named() {
+        let read = Points::parse("\u{feff}x, y\r\n1,2\n\n-3,4e-1\n".as_bytes(), 2).expect("valid");
+        assert_eq!(read.as_slice(), [Vector3::new(1.0, 2.0, 0.0), Vector3::new(-3.0, 0.4, 0.0)]);
+        for (text, line, words) in [
+            (&b""[..], 1, "the file is empty; a scene of 2 dimensions wants the header `x,y`"),
+            (b"\n\n", 1, "the file is empty"),
+            (b"a,b\n1,2\n", 1, "the header is `a,b`"),
+            (b"x,y\n", 1, "no points"),
+            (b"x,y\n1,2\n3\n", 3, "it has 1 field; allowed is one for each of `x,y`"),
+            (b"x,y\n1,2,3\n", 2, "it has 3 fields"),
+            (b"x,y\n1,one\n", 2, "`y` is `one`"),
+            (b"x,y\n1,nan\n", 2, "`y` is `nan`"),
+            (b"x,y\n1,1001\n", 2, "between -1000 and 1000"),
+            (b"x,y\n\xff,1\n", 2, "not UTF-8"),
+        ] {
+            let (at, what) = refused(text);
+            assert!(at == line && what.contains(words), "{at}: {what}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn never_panics(bytes in proptest::collection::vec(any::<u8>(), 0..200), text in "[0-9.e,\n-]{0,60}") {
+            let _ = Points::parse(&bytes, 2);
+            if let Ok(points) = Points::parse(format!("x,y,z\n{text}").as_bytes(), 3) {
+                prop_assert!(points.as_slice().iter().flatten().all(|c| c.abs() <= RANGE));
+            }
+        }
+    }
 }

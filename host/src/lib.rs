@@ -9,6 +9,7 @@ pub mod eval;
 pub mod import;
 pub mod learn;
 pub mod model;
+mod output;
 pub mod plot;
 pub mod proof;
 pub mod scene;

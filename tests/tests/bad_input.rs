@@ -123,7 +123,10 @@ fn models() {
     let at = good.match_indices("a = [").nth(1).unwrap().0;
     let end = at + good[at..].find("]]").unwrap() + 2;
     folder.write("unstable.toml", format!("{}a = [[1.0, 0.0], [0.0, 1.0]]{}", &good[..at], &good[end..]));
-    refused(&folder, &["check", "unstable.toml"], &["component 2", "certificate"]);
+    // The file, the line and the component, and only once.
+    let place = format!("unstable.toml, line {}:", good[..at].matches('\n').count() + 1);
+    refused(&folder, &["check", "unstable.toml"], &[&place, "component 2", "certificate"]);
+    refused(&folder, &["move", "unstable.toml", "-o", "m.toml", "--scale", "2"], &[&place, "component 2"]);
     let scene = SCENE.replacen("linear = { attractor = [0.0, 0.0], gain = 1.0 }", "model = \"unstable.toml\"", 1);
     folder.write("scene.toml", scene);
     refused(&folder, &["run", "scene.toml"], &["unstable.toml", "component 2"]);
@@ -144,6 +147,7 @@ fn models() {
         ("[[component]]", "[[komponent]]", "komponent"),
         ("prior = ", "prior = -", "prior"),
         ("name = ", "nme = ", "nme"),
+        ("[learnt]", "[learnt]\nsedd = 1", "sedd"),
     ];
     for (from, to, word) in cases {
         assert!(good.contains(from), "{from}");
@@ -153,6 +157,11 @@ fn models() {
     folder.write("bad.toml", &good[..good.len() / 2]);
     refused(&folder, &["check", "bad.toml"], &["bad.toml"]);
     refused(&folder, &["check", "missing.toml"], &["missing.toml"]);
+    for arguments in [&["check", "unstable.toml"][..], &["run", "scene.toml"], &["check", "missing.toml"]] {
+        let said = folder.run(arguments).stderr;
+        let reason = if arguments.contains(&"missing.toml") { "os error 2" } else { "is not negative definite" };
+        assert_eq!(said.split_whitespace().collect::<Vec<_>>().join(" ").matches(reason).count(), 1, "{said}");
+    }
 }
 
 #[test]
@@ -235,6 +244,12 @@ fn what_a_person_may_have_meant_is_a_warning() {
     learn("twice.csv", &["100 of 200 samples repeat"]);
     folder.write("ends.csv", motion(100, 1.0) + "0,0.3,0.2\n0.5,0.1,0.1\n1,0,0.02\n");
     learn("ends.csv", &["from the mean end point"]);
+    folder.write("once.csv", motion(100, 1.0));
+    warned(
+        &folder,
+        &["learn", "once.csv", "once.csv", "-o", "m.toml", "--components", "2"],
+        &["once.csv: it is given twice; of 2 demonstrations 1 repeat another"],
+    );
     let slow: String = motion(100, 1.0).lines().skip(1).map(|l| format!("{l},0,0\n")).collect();
     folder.write("velocity.csv", "t,x,y,vx,vy\n".to_owned() + &slow.replace(",0,0\n", ",-0.001,-0.001\n"));
     learn("velocity.csv", &["velocities are"]);
@@ -270,6 +285,7 @@ fn models_of_other_tools() {
         ("A: [-1.0", "A: [9.0", &["bad.yml", "component 1", "certified"]),
         ("A: [", "B: [", &["bad.yml", "`A`"]),
         ("M: 2.0", "M: [", &["bad.yml"]),
+        ("M: 2.0", "M: two", &["bad.yml, line 3", "`two`", "1 number,"]),
     ];
     for (from, to, words) in cases {
         assert!(FOREIGN.contains(from), "{from}");
@@ -383,7 +399,7 @@ fn devices() {
     assert_eq!(ended.code, Some(2), "{}", ended.stderr);
     assert!(ended.stderr.contains("did not answer"), "{}", ended.stderr);
     // Words clap refuses.
-    for bad in [&["run", "--device", "qmeu"][..], &["run", "--duration", "-1"], &["fly"], &["run", "--fast"]] {
+    for bad in [&["run", "--device", "qmeu"][..], &["fly"], &["run", "--fast"]] {
         let ended = folder.run(bad);
         assert_eq!(ended.code, Some(2), "{bad:?}");
         assert!(!ended.stderr.contains("panicked"));
@@ -402,4 +418,119 @@ fn a_missing_emulator_is_named_with_the_command_that_installs_it() {
     .unwrap();
     assert_eq!(ended.code, Some(2), "{}", ended.stderr);
     assert!(ended.stderr.contains("apt-get install qemu-system-arm"), "{}", ended.stderr);
+}
+
+/// A number that is none or out of its range, also a negative one, gets the sentence that says what is allowed.
+#[test]
+fn numbers_on_the_command_line() {
+    let folder = Folder::new("numbers");
+    for (arguments, allowed) in [
+        (&["run", "--duration", "-1"][..], "allowed is a number of seconds above 0"),
+        (&["run", "--duration", "0"], "allowed is a number of seconds above 0"),
+        (&["learn", "a.csv", "--sigma", "-1"], "allowed is 0 to 10 1/s"),
+        (&["learn", "a.csv", "--sigma", "nan"], "allowed is 0 to 10 1/s"),
+        (&["learn", "a.csv", "--pace", "-0.5"], "allowed is 0 to 10"),
+        (&["learn", "a.csv", "--components", "-1"], "allowed is a whole number from 1 to 16"),
+        (&["learn", "a.csv", "--components", "17"], "allowed is a whole number from 1 to 16"),
+        (&["learn", "a.csv", "--seed", "-1"], "allowed is a whole number from 0"),
+        (&["study", "paper", "--placements", "0"], "allowed is a whole number from 1"),
+        (&["study", "placements", "--placements", "-3"], "allowed is a whole number from 1"),
+        (&["study", "time", "--seed", "-3"], "allowed is a whole number from 0"),
+        (&["move", "m.toml", "-o", "n.toml", "--scale", "-2"], "allowed is 0.001 to 1000"),
+        (&["move", "m.toml", "-o", "n.toml", "--turn", "x"], "allowed is a number of degrees"),
+        (&["study", "lasa", "--seed", "x"], "allowed is a whole number from 0"),
+    ] {
+        refused(&folder, arguments, &[arguments[arguments.len() - 2], allowed]);
+    }
+    assert!(fs::read_dir(&folder.0).unwrap().next().is_none(), "nothing is written");
+}
+
+#[test]
+fn points_to_evaluate() {
+    let folder = Folder::new("points");
+    folder.write("scene.toml", SCENE);
+    for (text, words) in [
+        ("", &["points.csv, line 1", "empty", "`x,y`"][..]),
+        ("a,b\n1,2\n", &["points.csv, line 1", "`a,b`", "`x,y`"]),
+        ("x,y\n", &["points.csv", "no points"]),
+        ("x,y\n0.1,0.2\n0.3\n", &["points.csv, line 3", "1 field", "one for each of `x,y`"]),
+        ("x,y\n0.1,left\n", &["points.csv, line 2", "`left`"]),
+    ] {
+        folder.write("points.csv", text);
+        refused(&folder, &["eval", "scene.toml", "--points", "points.csv"], words);
+        assert!(!folder.run(&["eval", "scene.toml", "--points", "points.csv"]).stderr.contains("CSV"));
+    }
+    refused(&folder, &["eval", "scene.toml", "--points", "none.csv"], &["none.csv", "cannot be read"]);
+}
+
+#[test]
+fn every_command_makes_the_folders_it_writes_into() {
+    let folder = Folder::new("folders");
+    folder.write("scene.toml", SCENE);
+    folder.write("points.csv", "x,y\n0.1,0.2\n");
+    folder.write("a.csv", motion(200, 1.0));
+    folder.write("foreign.yml", FOREIGN);
+    for (arguments, file) in [
+        (&["learn", "a.csv", "--components", "2"][..], "learnt/deep/m.toml"),
+        (&["move", "learnt/deep/m.toml", "--scale", "2"], "moved/deep/m.toml"),
+        (&["import", "foreign.yml"], "imported/deep/m.toml"),
+        (&["eval", "scene.toml", "--points", "points.csv"], "evaluated/deep/v.csv"),
+        (&["plot", "scene.toml"], "drawn/deep/scene.svg"),
+    ] {
+        let mut all = arguments.to_vec();
+        all.extend(["-o", file]);
+        let ended = folder.run(&all);
+        assert_eq!(ended.code, Some(0), "{all:?}: {}", ended.stderr);
+        assert!(folder.0.join(file).is_file(), "{file}");
+        // Where a file is in the way, there is a sentence.
+        let blocked = format!("a.csv/{file}");
+        let last = all.len() - 1;
+        all[last] = &blocked;
+        refused(&folder, &all, &[&blocked, "cannot be written"]);
+    }
+}
+
+#[test]
+fn what_is_read_is_not_written_over() {
+    let folder = Folder::new("over");
+    folder.write("scene.toml", SCENE);
+    folder.write("points.csv", "x,y\n0.1,0.2\n");
+    folder.write("a.csv", motion(200, 1.0));
+    folder.write("foreign.yml", FOREIGN);
+    for (arguments, file) in [
+        (&["learn", "a.csv"][..], "a.csv"),
+        (&["import", "foreign.yml"], "./foreign.yml"),
+        (&["eval", "scene.toml", "--points", "points.csv"], "points.csv"),
+        (&["eval", "scene.toml", "--points", "points.csv"], "scene.toml"),
+    ] {
+        let before = fs::read(folder.0.join(file)).unwrap();
+        let mut all = arguments.to_vec();
+        all.extend(["-o", file]);
+        refused(&folder, &all, &[file, "would be written over"]);
+        assert_eq!(fs::read(folder.0.join(file)).unwrap(), before);
+    }
+    // A model to which a demonstration is added is written anew: that is what was asked for.
+    let learn = |more: &[&str]| {
+        let mut all = vec!["learn", "a.csv", "-o", "m.toml", "--components", "2", "--no-figure"];
+        all.extend(more);
+        folder.run(&all).code
+    };
+    assert_eq!((learn(&[]), learn(&["--add-to", "m.toml"])), (Some(0), Some(0)));
+}
+
+#[test]
+fn a_model_is_no_scene() {
+    let folder = Folder::new("model-as-scene");
+    folder.write("m.toml", fs::read_to_string(root().join("models/sbend.toml")).unwrap());
+    for command in ["run", "plot"] {
+        refused(&folder, &[command, "m.toml"], &["m.toml", "a model", "[ds]"]);
+    }
+}
+
+#[test]
+fn a_move_that_changes_nothing_is_refused() {
+    let folder = Folder::new("still");
+    folder.write("m.toml", fs::read_to_string(root().join("models/sbend.toml")).unwrap());
+    refused(&folder, &["move", "m.toml", "-o", "n.toml"], &["m.toml: nothing to change", "--attractor", "--scale"]);
+    assert!(!folder.0.join("n.toml").exists());
 }

@@ -77,7 +77,7 @@ fn check_paper(found: &Value, files: &Path, places: u64) {
     let jump = |column: &str| number(&placements[column]["velocity_jump"]["p95"]);
     assert!(jump("pliant") < jump("letter"), "{placements}");
     for verdict in found["verdicts"].as_array().unwrap() {
-        assert!(verdict["holds"].is_boolean() && verdict["measured"].is_string());
+        assert!(verdict["holds"].is_boolean() && verdict["vital"].is_boolean() && verdict["measured"].is_string());
     }
     let report = fs::read_to_string(files.join("report.md")).unwrap();
     for name in [
@@ -119,6 +119,12 @@ fn the_paper_on_our_own_motions_twice_the_same() {
 fn a_scene_of_an_experiment_runs_by_itself() {
     let folder = folder("scenes");
     study(&folder, &["experiments", "-o", "out"]);
+    let names = |of: &str| -> Vec<String> {
+        let all = fs::read_dir(folder.join("out").join(of)).unwrap();
+        all.map(|e| e.unwrap().file_name().into_string().unwrap()).collect()
+    };
+    let (scenes, models) = (names("scenes"), names("models"));
+    assert!(scenes.len() == 13 && models.len() == 2, "{scenes:?} {models:?}");
     let scene = folder.join("out/scenes/A1-pliant.toml");
     let ended = programs::run(&folder, ["run", scene.to_str().unwrap(), "--stepped", "--headless", "--json"]).unwrap();
     assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);

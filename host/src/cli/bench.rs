@@ -10,6 +10,7 @@ use crate::error::Outcome;
 
 /// Options of `pliant bench`.
 #[derive(Clone, Debug, clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub struct Args {
     /// Where to measure.
     #[arg(long, value_enum, default_value = "host")]

@@ -6,8 +6,8 @@ use pliant_core::{Fixed, Scalar};
 use serde_json::json;
 
 use super::{Finished, print_json};
-use crate::error::{Error, Outcome};
-use crate::model::{ModelFile, Skill};
+use crate::error::{Outcome, counted};
+use crate::model::{ModelFile, ModelFileError, Skill, Text};
 
 /// Options of `pliant check`.
 #[derive(Clone, Debug, clap::Args)]
@@ -27,8 +27,10 @@ struct Found {
 }
 
 pub(super) fn main(args: &Args, json: bool) -> Finished {
-    let model = ModelFile::read(&args.model)?;
-    let mut found = vec![certificate::<f32>("f32", &model)?, certificate::<f64>("f64", &model)?];
+    let text = Text::read(&args.model)?;
+    let model = text.model()?;
+    let checked = |found: Result<Found, ModelFileError>| found.map_err(|e| text.locate(e));
+    let mut found = vec![checked(certificate::<f32>("f32", &model))?, checked(certificate::<f64>("f64", &model))?];
     // A processor without floating point: not every skill has room in its numbers.
     let fixed = certificate::<Fixed>("fixed", &model);
     let without = fixed.as_ref().err().map(ToString::to_string);
@@ -48,7 +50,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
             "not_in_fixed_point": without,
         }));
     } else {
-        say!("{}: {} dimensions, {components} components", model.name, model.dimension);
+        say!("{}: {} dimensions, {}", model.name, model.dimension, counted(components, "component"));
         for f in found {
             say!(
                 "  {}: certified; the distance to the goal shrinks at {} or faster everywhere (component {} is the slowest)",
@@ -69,7 +71,7 @@ pub(super) fn per_second(margin: f64) -> String {
     format!("{:.3} 1/s", (margin * 1e3).floor() / 1e3)
 }
 
-fn certificate<S: Scalar>(precision: &'static str, model: &ModelFile) -> Result<Found, Error> {
+fn certificate<S: Scalar>(precision: &'static str, model: &ModelFile) -> Result<Found, ModelFileError> {
     let rate = match model.skill::<S>()? {
         Skill::Planar(ds) => ds.certificate().rate,
         Skill::Spatial(ds) => ds.certificate().rate,

@@ -9,6 +9,7 @@ use super::{Finished, print, print_json};
 use crate::bridge::Device;
 use crate::error::{Error, Outcome};
 use crate::eval::{Evaluation, Points, Stage, evaluate, evaluate_on};
+use crate::output;
 
 /// Options of `pliant eval`.
 #[derive(Clone, Debug, clap::Args)]
@@ -54,6 +55,9 @@ impl StageName {
 
 pub(super) fn main(args: &Args, json: bool) -> Finished {
     let scene = super::scene(Some(&args.scene))?;
+    if let Some(out) = &args.out {
+        output::spare(out, [args.scene.as_path(), args.points.as_path()])?;
+    }
     let points = Points::read(&args.points, scene.dimension())?;
     let rows = match &args.device {
         None => evaluate(&scene, &points, args.stage.stage())?,
@@ -77,7 +81,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Error> {
-    std::fs::write(path, text).map_err(|e| Error::bad_input(format!("{}: cannot be written: {e}", path.display())))
+    output::write(path, text).map_err(|e| Error::bad_input(format!("{}: cannot be written: {e}", path.display())))
 }
 
 fn row_json(row: &Evaluation, dimension: usize) -> serde_json::Value {

@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use serde_json::json;
 
 use super::{Finished, print_json, warn};
-use crate::error::Outcome;
+use crate::error::{Outcome, counted};
 use crate::import::{Layout, Means, Order, Proof, import};
 use crate::learn::{Unit, memory};
+use crate::model::Provenance;
+use crate::output;
 
 /// Options of `pliant import`.
 #[derive(Clone, Debug, clap::Args)]
@@ -32,10 +34,9 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     let stem = args.file.file_stem().map_or("imported".into(), |s| s.to_string_lossy().to_lowercase());
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.toml")));
     let mut found = import(&args.file, Layout { unit: Some(args.unit), order: args.order, means: args.means })?;
-    let mut learnt = toml::Table::new();
+    output::spare(&out, [args.file.as_path()])?;
     let source = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    learnt.insert("imported".into(), toml::Value::String(source));
-    found.model.learnt = Some(learnt);
+    found.model.learnt = Some(Provenance { imported: Some(source), ..Provenance::default() });
     memory::note(&mut found.model, &out, &[], &found.starts);
     let warnings = match found.proof {
         Proof::Replaced => vec![format!("{}: its `P` proves nothing; another P was found", args.file.display())],
@@ -60,7 +61,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
             Proof::Found => "with a P that was found for it",
             Proof::Replaced => "with another P than the one in the file",
         };
-        say!("{}: imported, {k} components, certified in f32 and f64 {proof}", found.model.name);
+        say!("{}: imported, {}, certified in f32 and f64 {proof}", found.model.name, counted(k, "component"));
         say!("  model: {}", out.display());
     }
     Ok(Outcome::Success)

@@ -3,17 +3,20 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use pliant_core::ds::MAX_COMPONENTS;
 use serde_json::json;
 
 use super::check::per_second;
-use super::{Finished, print_json, progress, warn};
-use crate::error::{Error, Outcome};
+use super::{Finished, number, print_json, progress, warn};
+use crate::error::{Error, Outcome, counted};
 use crate::learn::{Demonstrations, Learnt, Options, Unit, learn_from, memory, read};
 use crate::model::ModelFile;
+use crate::output;
 use crate::plot::{self, Portrait};
 
 /// Options of `pliant learn`.
 #[derive(Clone, Debug, clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub struct Args {
     /// Demonstrations of one skill: .mat (LASA), .npz, .csv with header t,x,y[,z], folders of them.
     #[arg(required = true, value_name = "DEMO")]
@@ -35,17 +38,29 @@ pub struct Args {
     #[arg(long)]
     unit: Option<Unit>,
     /// Number of components, 1 to 16 (chosen if not given).
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", value_parser = components)]
     components: Option<usize>,
     /// Seed of all random choices.
-    #[arg(long, default_value_t = Options::default().seed)]
+    #[arg(long, default_value_t = Options::default().seed, value_parser = number::seed)]
     seed: u64,
-    /// Guaranteed rate of convergence, 1/s.
-    #[arg(long, default_value_t = Options::default().sigma)]
+    /// Guaranteed rate of convergence, 0 to 10 1/s.
+    #[arg(long, default_value_t = Options::default().sigma, value_parser = sigma)]
     sigma: f64,
     /// Weight of being on time on the path against being on it, 0 to 10.
-    #[arg(long, default_value_t = Options::default().pace)]
+    #[arg(long, default_value_t = Options::default().pace, value_parser = pace)]
     pace: f64,
+}
+
+fn components(text: &str) -> Result<usize, String> {
+    number::within(text, 1..=MAX_COMPONENTS, format_args!("a whole number from 1 to {MAX_COMPONENTS}"))
+}
+
+fn sigma(text: &str) -> Result<f64, String> {
+    number::within(text, 0.0..=10.0, "0 to 10 1/s")
+}
+
+fn pace(text: &str) -> Result<f64, String> {
+    number::within(text, 0.0..=10.0, "0 to 10")
 }
 
 /// Part of the extent up to which a path error is small, or too large.
@@ -67,7 +82,10 @@ fn verdict(learnt: &Learnt) -> Vec<String> {
     }];
     if q.converged < q.rollouts {
         let stranded = q.rollouts - q.converged;
-        says.push(format!("{stranded} rollouts take longer than ten times their demonstration: raise --sigma"));
+        says.push(format!(
+            "{stranded} of {} rollouts take longer than ten times their demonstration: raise --sigma",
+            q.rollouts
+        ));
     }
     if q.robust < q.beside {
         says.push(format!(
@@ -102,7 +120,11 @@ fn verdict(learnt: &Learnt) -> Vec<String> {
 /// The skill beside its demonstrations.
 fn draw(learnt: &Learnt, figure: &Path) -> Result<(), Error> {
     let (model, shown) = (&learnt.model, &learnt.demonstrations);
-    let note = format!("{} components, path error {:.1} mm", model.component.len(), learnt.quality.path_error * 1e3);
+    let note = format!(
+        "{}, path error {:.1} mm",
+        counted(model.component.len(), "component"),
+        learnt.quality.path_error * 1e3
+    );
     if let Some(portrait) = Portrait::new(&*model.name, note, model, shown, Unit::M) {
         plot::portrait(&portrait, plot::Options::default().width).save(figure)?;
     }
@@ -118,6 +140,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     if let Some(figure) = &figure {
         plot::check_format(figure)?;
     }
+    output::spare(&out, args.demos.iter().map(PathBuf::as_path))?;
     let options = Options {
         name,
         unit: args.unit,
@@ -159,8 +182,10 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         }));
     } else {
         say!(
-            "{}: learnt from {demonstrations} demonstrations in {seconds:.2} s, {k} components, certified in f32 and f64",
-            learnt.model.name
+            "{}: learnt from {} in {seconds:.2} s, {}, certified in f32 and f64",
+            learnt.model.name,
+            counted(demonstrations, "demonstration"),
+            counted(k, "component")
         );
         say!(
             "  velocity error {:.4} m/s, direction error {:.4}, path error {:.1} mm",

@@ -15,6 +15,7 @@ mod check;
 mod eval;
 mod import;
 mod learn;
+mod number;
 mod plot;
 mod progress;
 mod relocate;
@@ -34,6 +35,8 @@ use crate::scene::Scene;
 ///
 /// Without a command, `pliant` runs its built-in scene on the virtual device.
 #[derive(Debug, Parser)]
+///
+/// A file that is written (-o, --figure) gets the folders it needs, and replaces what is there.
 #[command(version, propagate_version = true, max_term_width = 100)]
 struct Cli {
     #[command(subcommand)]

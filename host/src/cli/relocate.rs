@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use serde_json::json;
 
-use super::{Finished, Point, print_json};
+use super::{Finished, Point, number, print_json};
 use crate::error::{Error, Outcome};
 use crate::learn::memory;
-use crate::model::{ModelFile, Similarity};
+use crate::model::{Provenance, Similarity, Text};
 
 /// Options of `pliant move`.
 #[derive(Clone, Debug, clap::Args)]
@@ -28,18 +28,31 @@ pub struct Args {
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, requires = "start")]
     from: Option<Point>,
     /// How many times as large it is to be, 0.001 to 1000.
-    #[arg(long, value_name = "FACTOR")]
+    #[arg(long, value_name = "FACTOR", value_parser = factor)]
     scale: Option<f64>,
     /// Turn it about the attractor, counter-clockwise, degrees.
-    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, value_parser = degrees)]
     turn: Option<f64>,
     /// In space, the axis to turn about (z if not given).
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "turn")]
     axis: Option<Point>,
 }
 
+fn degrees(text: &str) -> Result<f64, String> {
+    number::within(text, -1e6..=1e6, "a number of degrees, such as 90 or -45")
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    number::within(text, 1e-3..=1e3, "0.001 to 1000")
+}
+
 pub(super) fn main(args: &Args, json: bool) -> Finished {
-    let model = ModelFile::read(&args.model)?;
+    if args.attractor.is_none() && args.start.is_none() && args.scale.is_none() && args.turn.is_none() {
+        let help = "say where to by --attractor or --start, how large by --scale, which way by --turn";
+        return Err(Error::bad_input(format!("{}: nothing to change", args.model.display())).with_help(help));
+    }
+    let text = Text::read(&args.model)?;
+    let model = text.model()?;
     let mut by = Similarity::identity(model.dimension);
     if let Some(Point(attractor)) = &args.attractor {
         by = by.to(attractor)?;
@@ -57,12 +70,12 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     if let Some(turn) = args.turn {
         by = by.turned(turn.to_radians(), args.axis.as_ref().map(|p| p.0.as_slice()))?;
     }
+    // A fault of the model as it is has a place in its file.
+    model.is_certified().map_err(|e| text.locate(e))?;
     let mut moved = model.placed(&by)?;
     let starts: Vec<_> = memory::starts(&model).iter().map(|p| by.place(&model.attractor, p)).collect();
-    let mut learnt = toml::Table::new();
     let source = args.model.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    learnt.insert("moved".into(), toml::Value::String(source));
-    moved.learnt = Some(learnt);
+    moved.learnt = Some(Provenance { moved: Some(source), ..Provenance::default() });
     memory::note(&mut moved, &args.out, &[], &starts);
     moved.name = args.out.file_stem().map_or(model.name, |s| s.to_string_lossy().into_owned());
     moved.write(&args.out)?;

@@ -7,13 +7,14 @@ use serde_json::json;
 
 use super::{Finished, finite, print_json, progress};
 use crate::bridge::{BridgeError, Device};
-use crate::error::{Error, Outcome};
+use crate::error::{Error, Outcome, counted};
 use crate::plot;
 use crate::scene::Scene;
 use crate::sim::{RunOptions, Runs, run_scene};
 
 /// Options of `pliant run`.
 #[derive(Clone, Debug, clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub struct Args {
     /// Scene file; the built-in scene if not given.
     scene: Option<PathBuf>,
@@ -50,7 +51,7 @@ enum Robot {
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(s) if s > 0.0 && s <= 86_400.0 => Ok(s),
-        _ => Err("a number of seconds above 0, at most 86400".into()),
+        _ => Err("allowed is a number of seconds above 0, at most 86400".into()),
     }
 }
 
@@ -136,7 +137,7 @@ fn as_json(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Option<
 
 fn print_table(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Option<&Path>) {
     let pace = if args.stepped { "stepped" } else { "1 kHz" };
-    say!("{} on {} ({board}, {pace}): {} obstacles\n", scene.name(), args.device, scene.obstacles().len());
+    say!("{} on {} ({board}, {pace}): {}\n", scene.name(), args.device, counted(scene.obstacles().len(), "obstacle"));
     say!("  start                     reached  time s  min Gamma  nearest              ticks  missed");
     for r in &runs.runs {
         let coordinates: Vec<_> = r.start.iter().take(scene.dimension()).map(|x| format!("{x:.3}")).collect();

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::Subcommand;
 use indicatif::ProgressBar;
 
-use super::{Finished, print_json, progress};
+use super::{Finished, number, print_json, progress};
 use crate::bridge::Device;
 use crate::error::Outcome;
 use crate::study::skill::Skills;
@@ -67,16 +67,17 @@ enum OfPaper {
 }
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(allow_negative_numbers = true)]
 struct Common {
     /// Folder with Sshape.mat, Angle.mat and Leaf_1.mat of the LASA handwriting set, learnt now, a unit as a centimetre; without it the
     /// project's own motions stand in.
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
-    /// Where to write report.md, tables, figures and scenes.
+    /// Where to write report.md, tables, figures, scenes and their models.
     #[arg(short, long, value_name = "DIR", default_value = "out/study")]
     out: PathBuf,
     /// Seed of all random choices.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = number::seed)]
     seed: u64,
 }
 
@@ -89,9 +90,13 @@ struct OnDevice {
 
 #[derive(Clone, Debug, clap::Args)]
 struct Places {
-    /// Random obstacles on each side of the path.
-    #[arg(long, value_name = "N", default_value_t = placements::COUNT)]
+    /// Random obstacles on each side of the path, 1 to 1000000.
+    #[arg(long, value_name = "N", default_value_t = placements::COUNT, value_parser = count)]
     placements: usize,
+}
+
+fn count(text: &str) -> Result<usize, String> {
+    number::within(text, 1..=1_000_000, "a whole number from 1 to 1000000")
 }
 
 impl OfPaper {
@@ -193,10 +198,17 @@ fn report(found: &Findings, skills: &Skills, common: &Common, introduction: &str
     } else {
         say!("{introduction}");
         for v in &found.verdicts {
-            say!("  {}  {}", if v.holds { "holds " } else { "FAILS " }, v.claim);
+            let holds = match (v.holds, v.vital) {
+                (Some(true), _) => "holds",
+                (Some(false), true) => "FAILS",
+                (Some(false), false) => "fails",
+                (None, _) => "-",
+            };
+            say!("  {holds:6}  {}", v.claim);
             say!("          paper: {}; measured: {}", v.paper, v.measured);
         }
-        say!("\n  tables, figures and scenes: {}", shown(&common.out));
+        say!("\n  tables, figures, scenes and their models: {}", shown(&common.out));
+        say!("  {}", found.conclusion());
     }
     Ok(if found.is_well() { Outcome::Success } else { Outcome::Failed })
 }

@@ -52,7 +52,11 @@ pub fn parse(text: &str) -> Result<BTreeMap<String, Field>, Fault> {
         }
     };
     if !matches!(begin.0, Event::MappingStart(..)) {
-        return Err(Fault { line: begin.1, problem: "it is no table of fields".into() });
+        return Err(Fault {
+            line: begin.1,
+            problem: "it is no table of fields, such as `K: 3`; a model has K, M, Priors, Mu, Sigma, A and attractor"
+                .into(),
+        });
     }
     let mut numbers = 0;
     loop {

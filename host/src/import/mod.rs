@@ -7,6 +7,7 @@
 mod fields;
 mod lyapunov;
 
+use crate::error::counted;
 use crate::learn::{LearnError, Unit, read::bytes_of};
 use crate::model::{ComponentFile, FORMAT, FieldError, ModelFile, rounded};
 use fields::{Field, Value};
@@ -40,7 +41,7 @@ pub enum ImportError {
         problem: String,
     },
     /// A field is missing.
-    #[error("{file}: `{field}` is missing; {allowed} is needed")]
+    #[error("{file}: `{field}` is missing; needed: {allowed}")]
     Missing {
         /// Path as given.
         file: String,
@@ -203,7 +204,7 @@ impl Table<'_> {
 
     /// The numbers of a field, which has one of several names, and whether they are nested.
     fn numbers(&self, names: &[&'static str], count: usize, what: &str) -> Result<(&[f64], bool), ImportError> {
-        let allowed = format!("{count} numbers, {what}");
+        let allowed = format!("{}, {what}", counted(count, "number"));
         let Some((name, field)) = self.find(names) else {
             return Err(ImportError::Missing { file: self.file.into(), field: names[0], allowed });
         };
@@ -215,7 +216,7 @@ impl Table<'_> {
                 }
             }
             Value::Numbers { values, .. } => {
-                Err(self.fault(name, field, format!("has {} numbers", values.len()), allowed))
+                Err(self.fault(name, field, format!("has {}", counted(values.len(), "number")), allowed))
             }
             Value::Text(text) => {
                 let text: String = text.chars().take(40).collect();

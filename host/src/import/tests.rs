@@ -101,9 +101,9 @@ fn mistakes_have_their_line_and_field() {
     let cases = [
         ("K: 2.0", "K: 3.0", "m.yml, line 4: `Priors` has 2 numbers; allowed is 3 numbers"),
         ("K: 2.0", "K: 17", "line 2: `K` is 17; allowed is 1 to 16"),
-        ("M: 2.0", "M: two", "line 3: `M` is `two`"),
+        ("M: 2.0", "M: two", "line 3: `M` is `two`; allowed is 1 number, the dimension"),
         ("K: 2.0", "Prior: [0.75, 0.25]\nK: 2.0", "line 2: `Prior` is there beside `Priors`, and differs"),
-        ("Mu: ", "Moo: ", "m.yml: `Mu` is missing; 4 numbers"),
+        ("Mu: ", "Moo: ", "m.yml: `Mu` is missing; needed: 4 numbers"),
         ("attractor: [0.0, 0.5]", "attractor: [0.0, .nan]", "line 9: `attractor` holds NaN"),
         ("0.25, 0.75", "-0.25, 0.75", "component 1: `prior` is -0.25"),
         ("[0.01, 0.002, 0.002, 0.02", "[0.01, 0.2, 0.2, 0.02", "component 1: `covariance` is not positive definite"),

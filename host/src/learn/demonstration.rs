@@ -5,6 +5,8 @@ use super::error::LearnError;
 use super::smoothing;
 use super::warning::Warning;
 use nalgebra::DVector;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 /// How far demonstrations may end from their mean end, as a part of the extent of the skill.
 pub const END_TOLERANCE: f64 = 0.05;
@@ -22,7 +24,8 @@ const USUAL_EXTENTS: std::ops::RangeInclusive<f64> = 0.005..=10.0;
 const USUAL_SPEEDS: std::ops::RangeInclusive<f64> = 0.001..=10.0;
 
 /// The unit of lengths in a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Unit {
     /// Millimetres.
     Mm,
@@ -254,6 +257,7 @@ impl Demonstrations {
             });
         }
         let mut warnings: Vec<Warning> = items.iter_mut().flat_map(|i| std::mem::take(&mut i.warnings)).collect();
+        warnings.extend(repeated(&items));
         items = with_like_rates(items, &mut warnings);
         let ends: Vec<_> = items.iter().map(|i| i.x[i.x.len() - 1].clone()).collect();
         let mean = ends.iter().fold(DVector::zeros(d), |sum, e| sum + e) / ends.len() as f64;
@@ -348,6 +352,28 @@ impl Demonstrations {
     }
 }
 
+/// Is a recording there more than once?
+fn repeated(items: &[Demonstration]) -> Option<Warning> {
+    let bits = |d: &Demonstration| -> Vec<u64> {
+        d.t.iter().chain(d.x.iter().flat_map(|p| p.iter())).map(|c| c.to_bits()).collect()
+    };
+    let mut known = HashMap::new();
+    let mut again = Vec::new();
+    for item in items {
+        match known.entry(bits(item)) {
+            Entry::Vacant(new) => _ = new.insert(item),
+            Entry::Occupied(first) => again.push((item, *first.get())),
+        }
+    }
+    let (item, first) = again.first()?;
+    Some(Warning::Again {
+        demonstration: item.name.clone(),
+        first: first.name.clone(),
+        count: again.len(),
+        demonstrations: items.len(),
+    })
+}
+
 /// Brings recordings to the rate of the others where it is very different, so that a fast recorder does not outvote the rest.
 fn with_like_rates(items: Vec<Demonstration>, warnings: &mut Vec<Warning>) -> Vec<Demonstration> {
     let mut rates: Vec<f64> = items.iter().map(Demonstration::rate).collect();
@@ -412,6 +438,23 @@ mod tests {
         }
         let apart = Demonstrations::new(vec![make(0.0), make(0.5)]);
         assert!(message(apart).contains("from the mean end point"));
+    }
+
+    #[test]
+    fn a_recording_that_is_there_twice_is_told_of() {
+        let make = |name: &str, x: f64| {
+            Demonstration::new(name, vec![0.0, 1.0], points(&[[x, 1.0], [0.0, 0.0]]), None).expect("valid")
+        };
+        let said = |items| -> Vec<String> {
+            let all: Demonstrations = Demonstrations::new(items).expect("one skill");
+            all.warnings().iter().map(ToString::to_string).collect()
+        };
+        assert!(said(vec![make("a", 1.0), make("b", 1.1)]).is_empty());
+        let twice = said(vec![make("a", 1.0), make("b", 1.1), make("a", 1.0), make("c", 1.1)]);
+        assert_eq!(twice.len(), 1, "{twice:?}");
+        assert!(twice[0].starts_with("a: it is given twice; of 4 demonstrations 2 repeat another"), "{twice:?}");
+        let other = said(vec![make("a", 1.0), make("b", 1.0)]);
+        assert!(other[0].starts_with("b: it is the same as a; of 2 demonstrations 1 repeat"), "{other:?}");
     }
 
     #[test]

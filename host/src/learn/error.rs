@@ -6,12 +6,12 @@ use std::io;
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum LearnError {
     /// The file or folder cannot be opened.
-    #[error("{file}: cannot be read: {source}")]
+    #[error("{file}: cannot be read: {problem}")]
     Unreadable {
         /// Path as given.
         file: String,
         /// What the system said.
-        source: io::Error,
+        problem: io::Error,
     },
     /// The name of the file says nothing about its format.
     #[error("{file}: unknown format; demonstrations are .mat, .npz or .csv files, or folders of them")]

@@ -8,14 +8,10 @@ use super::demonstration::{Demonstration, Demonstrations, Unit};
 use super::error::LearnError;
 use super::warning::Warning;
 use super::{motion_of, read};
-use crate::model::{ModelFile, rounded};
+use crate::model::{ModelFile, SourceFile, rounded};
 use nalgebra::{DVector, SVector};
 use std::path::{Component, Path, PathBuf};
 
-const SOURCES: &str = "sources";
-const FILE: &str = "file";
-const UNIT: &str = "unit";
-const STARTS: &str = "starts";
 /// Starts that are remembered.
 const MOST_STARTS: usize = 64;
 /// Steps of one motion that stands for a demonstration.
@@ -32,35 +28,14 @@ pub struct Source {
 
 /// Notes where a model comes from, in its `learnt` table. `file` is where the model will be.
 pub fn note(model: &mut ModelFile, file: &Path, sources: &[Source], starts: &[Vec<f64>]) {
-    let source = |s: &Source| {
-        let mut table = toml::Table::new();
-        table.insert(FILE.to_owned(), toml::Value::String(relative(file, &s.path)));
-        if let Some(unit) = s.unit {
-            table.insert(UNIT.to_owned(), toml::Value::String(unit.to_string()));
-        }
-        toml::Value::Table(table)
-    };
-    let point = |p: &Vec<f64>| toml::Value::Array(p.iter().map(|c| toml::Value::Float(rounded(*c))).collect());
-    let sources: Vec<_> = sources.iter().map(source).collect();
-    let starts: Vec<_> = starts.iter().take(MOST_STARTS).map(point).collect();
-    let table = model.learnt.get_or_insert_default();
-    for (key, list) in [(STARTS, starts), (SOURCES, sources)] {
-        if !list.is_empty() {
-            table.insert(key.to_owned(), toml::Value::Array(list));
-        }
-    }
+    let learnt = model.learnt.get_or_insert_default();
+    learnt.sources = sources.iter().map(|s| SourceFile { file: relative(file, &s.path), unit: s.unit }).collect();
+    learnt.starts = starts.iter().take(MOST_STARTS).map(|p| p.iter().map(|c| rounded(*c)).collect()).collect();
 }
 
 /// Where the demonstrations began.
 pub fn starts(model: &ModelFile) -> Vec<Vec<f64>> {
-    let all = model.learnt.as_ref().and_then(|t| t.get(STARTS)).and_then(toml::Value::as_array);
-    let point = |p: &toml::Value| -> Option<Vec<f64>> {
-        let number =
-            |c: &toml::Value| c.as_float().or_else(|| c.as_integer().map(|i| i as f64)).filter(|c| c.is_finite());
-        let p: Vec<_> = p.as_array()?.iter().map(number).collect::<Option<_>>()?;
-        (p.len() == model.dimension).then_some(p)
-    };
-    all.into_iter().flatten().filter_map(point).take(MOST_STARTS).collect()
+    model.learnt.iter().flat_map(|l| &l.starts).take(MOST_STARTS).cloned().collect()
 }
 
 /// Their mean.
@@ -72,13 +47,9 @@ pub fn mean_start(model: &ModelFile) -> Option<Vec<f64>> {
 
 /// What a model was learnt from. `file` is where the model is.
 pub fn sources(model: &ModelFile, file: &Path) -> Vec<Source> {
-    let all = model.learnt.as_ref().and_then(|t| t.get(SOURCES)).and_then(toml::Value::as_array);
     let folder = file.parent().unwrap_or(Path::new(""));
-    let source = |s: &toml::Value| {
-        let path = folder.join(s.get(FILE)?.as_str()?);
-        Some(Source { path, unit: s.get(UNIT).and_then(toml::Value::as_str).and_then(|u| u.parse().ok()) })
-    };
-    all.into_iter().flatten().filter_map(source).collect()
+    let source = |s: &SourceFile| Source { path: folder.join(&s.file), unit: s.unit };
+    model.learnt.iter().flat_map(|l| &l.sources).map(source).collect()
 }
 
 /// The demonstrations of a model together with new ones, and what can be remembered of the old ones. `file` is where the model is.
@@ -99,7 +70,7 @@ pub fn with(
         }
         Ok(_) => "it does not name the files it was learnt from".to_owned(),
         // What is there but damaged is for a person to look at; what is gone is gone.
-        Err(LearnError::Unreadable { file, source }) if source.kind() == std::io::ErrorKind::NotFound => {
+        Err(LearnError::Unreadable { file, problem }) if problem.kind() == std::io::ErrorKind::NotFound => {
             format!("{file}, which it was learnt from, is gone")
         }
         Err(other) => return Err(other),

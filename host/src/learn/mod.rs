@@ -31,7 +31,7 @@ pub use quality::Quality;
 pub use read::read;
 pub use warning::Warning;
 
-use crate::model::{ComponentFile, FORMAT, ModelFile, rounded};
+use crate::model::{ComponentFile, FORMAT, ModelFile, Provenance, rounded};
 use candidate::{Candidate, Effort, Grouping, Lesson};
 use evaluate::Motion;
 use gmm::{MAX_COMPONENTS, Mixture};
@@ -331,25 +331,23 @@ pub fn evaluate(model: &ModelFile, demonstrations: &Demonstrations) -> Option<Qu
     }
 }
 
-fn provenance(options: &Options, demonstrations: &Demonstrations, quality: &Quality) -> toml::Table {
-    let float = |x: f64| toml::Value::Float((x * 1e6).round() / 1e6);
-    let integer = |n: usize| toml::Value::Integer(n as i64);
-    [
-        ("demonstrations", integer(demonstrations.items().len())),
-        ("samples", integer(demonstrations.samples())),
-        ("sigma", float(options.sigma)),
-        ("seed", toml::Value::Integer(options.seed as i64)),
-        ("rmse", float(quality.rmse)),
-        ("e_dot", float(quality.e_dot)),
-        ("dtwd", float(quality.dtwd)),
-        ("pace", float(quality.pace)),
-        ("path_error", float(quality.path_error)),
-        ("converged", integer(quality.converged)),
-        ("robust", integer(quality.robust)),
-    ]
-    .into_iter()
-    .map(|(key, value)| (key.to_owned(), value))
-    .collect()
+fn provenance(options: &Options, demonstrations: &Demonstrations, quality: &Quality) -> Provenance {
+    let float = |x: f64| Some((x * 1e6).round() / 1e6);
+    let count = |n: usize| u32::try_from(n).ok();
+    Provenance {
+        demonstrations: count(demonstrations.items().len()),
+        samples: Some(demonstrations.samples() as u64),
+        sigma: float(options.sigma),
+        seed: Some(options.seed as i64),
+        rmse: float(quality.rmse),
+        e_dot: float(quality.e_dot),
+        dtwd: float(quality.dtwd),
+        pace: float(quality.pace),
+        path_error: float(quality.path_error),
+        converged: count(quality.converged),
+        robust: count(quality.robust),
+        ..Provenance::default()
+    }
 }
 
 #[cfg(test)]

@@ -12,6 +12,17 @@ pub enum Warning {
         /// Their names.
         names: String,
     },
+    /// Recordings that are there more than once.
+    Again {
+        /// Where the first of them comes from: file and number.
+        demonstration: String,
+        /// Where the recording it repeats comes from.
+        first: String,
+        /// How many repeat another.
+        count: usize,
+        /// How many demonstrations there are in all.
+        demonstrations: usize,
+    },
     /// Samples that repeat the one before them, time and all.
     Repeated {
         /// Where it comes from: file and number.
@@ -103,6 +114,17 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Warning::Ignored { file, names } => write!(f, "{file}: {names} not used; docs/learning.md names what is"),
+            Warning::Again { demonstration, first, count, demonstrations } => {
+                let again = if demonstration == first {
+                    "it is given twice".into()
+                } else {
+                    format!("it is the same as {first}")
+                };
+                write!(
+                    f,
+                    "{demonstration}: {again}; of {demonstrations} demonstrations {count} repeat another, which counts the more"
+                )
+            }
             Warning::Repeated { demonstration, count, samples } => {
                 write!(f, "{demonstration}: {count} of {samples} samples repeat the one before them; they are left out")
             }

@@ -64,13 +64,13 @@ impl ModelFile {
     }
 
     fn refused(&self, e: CertificateError, doubt: &str) -> ModelFileError {
-        let problem = match e {
-            CertificateError::Lyapunov => format!("lyapunov is not positive definite{doubt}"),
+        let (component, problem) = match e {
+            CertificateError::Lyapunov => (None, format!("lyapunov is not positive definite{doubt}")),
             CertificateError::Component(k) => {
-                format!("component {}: a' P + P a is not negative definite{doubt}", k + 1)
+                (Some(k), format!("component {}: a' P + P a is not negative definite{doubt}", k + 1))
             }
         };
-        ModelFileError::Certificate { name: self.name.clone(), problem }
+        ModelFileError::Certificate { name: self.name.clone(), component, problem }
     }
 
     /// The certified skill in its own dimension.
@@ -79,6 +79,15 @@ impl ModelFile {
             3 => self.certify::<S, 3>().map(Skill::Spatial),
             _ => self.certify::<S, 2>().map(Skill::Planar),
         }
+    }
+
+    /// Checks the certificate in f32 and f64.
+    ///
+    /// # Errors
+    /// It does not hold, or the numbers do not fit.
+    pub fn is_certified(&self) -> Result<(), ModelFileError> {
+        self.skill::<f64>()?;
+        self.skill::<f32>().map(|_| ())
     }
 
     /// Does the certificate hold in the precision S?

@@ -9,20 +9,20 @@ use std::sync::Arc;
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ModelFileError {
     /// The file cannot be opened or is not text.
-    #[error("{file}: cannot be read: {source}")]
+    #[error("{file}: cannot be read: {problem}")]
     Unreadable {
         /// Path as given.
         file: String,
         /// What the system said.
-        source: io::Error,
+        problem: io::Error,
     },
     /// The file cannot be written.
-    #[error("{file}: cannot be written: {source}")]
+    #[error("{file}: cannot be written: {problem}")]
     Unwritable {
         /// Path as given.
         file: String,
         /// What the system said.
-        source: io::Error,
+        problem: io::Error,
     },
     /// Something in the file is wrong, at a known place.
     #[error("{file}, line {line}: {problem}")]
@@ -58,6 +58,8 @@ pub enum ModelFileError {
     Certificate {
         /// Name of the model.
         name: String,
+        /// The component at fault, from 0; none if it is `lyapunov`.
+        component: Option<usize>,
         /// Which part fails.
         problem: String,
     },

@@ -1,27 +1,32 @@
 //! Finds the text of a field, so that an error can point at it.
 
-use super::FieldError;
+use super::ModelFileError;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::{Spanned, Value};
 
+type Fields = BTreeMap<String, Spanned<Value>>;
+
 #[derive(Deserialize)]
 struct Located {
     #[serde(default)]
-    component: Vec<BTreeMap<String, Spanned<Value>>>,
+    component: Vec<Fields>,
+    #[serde(default)]
+    learnt: Fields,
+}
+
+/// The error about a field of the model, or of one of its components, at the field's place.
+pub fn fault(file: &str, text: &str, component: Option<usize>, name: &str, problem: String) -> ModelFileError {
+    ModelFileError::located(file, text, span(text, component, name).unwrap_or(0..0), problem)
 }
 
 /// The bytes of the field's value.
-pub fn span(text: &str, fault: &FieldError) -> Option<Range<usize>> {
-    match fault.component {
-        Some(k) => {
-            let located: Located = toml::from_str(text).ok()?;
-            Some(located.component.get(k)?.get(fault.name)?.span())
-        }
-        None => {
-            let fields: BTreeMap<String, Spanned<Value>> = toml::from_str(text).ok()?;
-            Some(fields.get(fault.name)?.span())
-        }
+fn span(text: &str, component: Option<usize>, name: &str) -> Option<Range<usize>> {
+    let located = || toml::from_str::<Located>(text).ok();
+    match (component, name.strip_prefix("learnt.")) {
+        (Some(k), _) => Some(located()?.component.get(k)?.get(name)?.span()),
+        (None, Some(name)) => Some(located()?.learnt.get(name)?.span()),
+        (None, None) => Some(toml::from_str::<Fields>(text).ok()?.get(name)?.span()),
     }
 }

@@ -3,14 +3,19 @@
 mod convert;
 mod error;
 mod locate;
+mod provenance;
+mod text;
 mod transform;
 
 pub use convert::Skill;
 pub use error::{FieldError, ModelFileError};
+pub use provenance::{Provenance, SourceFile};
+pub use text::Text;
 pub use transform::{Similarity, SimilarityError};
 
+use crate::error::counted;
+use crate::output;
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::path::Path;
 
 /// The version of the format that is read and written.
@@ -37,9 +42,9 @@ pub struct ModelFile {
     pub lyapunov: Vec<Vec<f64>>,
     /// 1 to 16 linear systems and where they rule.
     pub component: Vec<ComponentFile>,
-    /// How it was learnt: numbers for people, not used.
+    /// How it was learnt; it does not change what the skill does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub learnt: Option<toml::Table>,
+    pub learnt: Option<Provenance>,
 }
 
 /// One linear system and the Gaussian that says where it rules.
@@ -59,11 +64,7 @@ pub struct ComponentFile {
 impl ModelFile {
     /// Reads and checks a file. The certificate is not part of this check.
     pub fn read(path: &Path) -> Result<Self, ModelFileError> {
-        let file = path.display().to_string();
-        match fs::read_to_string(path) {
-            Ok(text) => Self::parse(&file, &text),
-            Err(source) => Err(ModelFileError::Unreadable { file, source }),
-        }
+        Text::read(path)?.model()
     }
 
     /// Reads and checks text; `file` is named in errors.
@@ -74,24 +75,21 @@ impl ModelFile {
         })?;
         match model.validate() {
             Ok(()) => Ok(model),
-            Err(fault) => {
-                let span = locate::span(text, &fault).unwrap_or(0..0);
-                Err(ModelFileError::located(file, text, span, fault.to_string()))
-            }
+            Err(fault) => Err(locate::fault(file, text, fault.component, fault.name, fault.to_string())),
         }
     }
 
     /// The text of the file: the same model gives the same text, and reading it gives the same model.
     pub fn to_toml(&self) -> Result<String, ModelFileError> {
         let body = toml::to_string(self)
-            .map_err(|e| ModelFileError::Unwritable { file: self.name.clone(), source: std::io::Error::other(e) })?;
+            .map_err(|e| ModelFileError::Unwritable { file: self.name.clone(), problem: std::io::Error::other(e) })?;
         Ok(format!("{COMMENT}{body}"))
     }
 
-    /// Writes the file.
+    /// Writes the file, and the folder it is in if need be.
     pub fn write(&self, path: &Path) -> Result<(), ModelFileError> {
-        fs::write(path, self.to_toml()?)
-            .map_err(|source| ModelFileError::Unwritable { file: path.display().to_string(), source })
+        output::write(path, self.to_toml()?)
+            .map_err(|problem| ModelFileError::Unwritable { file: path.display().to_string(), problem })
     }
 
     /// Checks sizes and ranges: all that can be said about each field by itself.
@@ -122,6 +120,9 @@ impl ModelFile {
             check(at, "covariance", definite(&c.covariance, d))?;
             check(at, "a", square(&c.a, d))?;
         }
+        for start in self.learnt.iter().flat_map(|l| &l.starts) {
+            check(None, "learnt.starts", vector(start, d))?;
+        }
         Ok(())
     }
 }
@@ -140,7 +141,7 @@ fn check(component: Option<usize>, name: &'static str, result: Check) -> Result<
 
 fn vector(v: &[f64], d: usize) -> Check {
     if v.len() != d {
-        return Err((format!("has {} numbers for dimension {d}", v.len()), "one number a dimension"));
+        return Err((format!("has {} for dimension {d}", counted(v.len(), "number")), "one number a dimension"));
     }
     match v.iter().find(|c| !(c.abs() <= pliant_core::RANGE)) {
         Some(c) => Err((format!("holds {c}"), "-1000 to 1000 m")),

@@ -43,7 +43,7 @@ fn every_mistake_has_its_line_and_field() {
     let cases = [
         ("format = 1", "format = 2", "m.toml, line 1: `format` is 2; allowed is 1"),
         ("dimension = 2", "dimension = 4", "m.toml, line 3: `dimension` is 4"),
-        ("[0.0, 0.5]", "[0.0]", "line 4: `attractor` has 1 numbers for dimension 2"),
+        ("[0.0, 0.5]", "[0.0]", "line 4: `attractor` has 1 number for dimension 2"),
         ("[0.0, 0.5]", "[0.0, nan]", "line 4: `attractor` holds NaN"),
         ("[0.1, 2.0]]", "[0.2, 2.0]]", "line 5: `lyapunov` is not symmetric"),
         ("[0.1, 2.0]]", "[0.1, -2.0]]", "line 5: `lyapunov` is not positive definite"),
@@ -88,6 +88,49 @@ fn the_core_evaluates_as_the_learner_does() {
         let x = nalgebra::Vector2::from(x);
         assert!((motion.velocity(&x) - core.velocity(&x)).norm() < 1e-12);
     }
+}
+
+#[test]
+fn what_is_remembered_of_learning_is_checked_too() {
+    let learnt =
+        "[learnt]\nseed = 1\nsigma = 0\nstarts = [[0.3, 0.4]]\nsources = [{ file = \"a.csv\", unit = \"mm\" }]\n";
+    let good = format!("{}{learnt}", &TEXT[..TEXT.find("[learnt]").expect("there")]);
+    let model = ModelFile::parse("m.toml", &good).expect("valid");
+    let known = model.learnt.as_ref().expect("there");
+    assert_eq!((known.seed, known.sigma, known.starts.len()), (Some(1), Some(0.0), 1));
+    let again = ModelFile::parse("m.toml", &model.to_toml().expect("text")).expect("valid");
+    assert_eq!(again, model);
+    let line = |of: &str| 1 + good.lines().position(|l| l.contains(of)).expect("there");
+    for (from, to, word) in [
+        ("seed = 1", "sead = 1", "unknown field `sead`"),
+        ("seed = 1", "seed = \"x\"", "expected i64"),
+        ("file =", "fil =", "unknown field `fil`"),
+        ("\"mm\"", "\"km\"", "unknown variant `km`"),
+        ("[[0.3, 0.4]]", "[[0.3]]", "`learnt.starts` has 1 number for dimension 2"),
+        ("[[0.3, 0.4]]", "[[0.3, nan]]", "`learnt.starts` holds NaN"),
+    ] {
+        let said = ModelFile::parse("m.toml", &good.replacen(from, to, 1)).expect_err("must be refused").to_string();
+        assert!(said.starts_with(&format!("m.toml, line {}: ", line(from))) && said.contains(word), "{said}");
+    }
+}
+
+#[test]
+fn a_certificate_that_fails_points_at_what_fails() {
+    let says = |from: &str, to: &str| {
+        let text = Text::new("m.toml", TEXT.replacen(from, to, 1));
+        let model = text.model().expect("each field by itself is right");
+        text.locate(model.is_certified().expect_err("must be refused")).to_string()
+    };
+    let line = |of: &str| format!("m.toml, line {}: ", 1 + TEXT.lines().position(|l| l.contains(of)).expect("there"));
+    let second = "a = [[-2.0, 0.0], [0.0, -1.0]]";
+    let said = says(second, "a = [[2.0, 0.0], [0.0, -1.0]]");
+    assert!(said.starts_with(&line(second)) && said.contains("component 2: a' P + P a"), "{said}");
+    let said = says(second, "a = [[-2.0, 0.0], [0.0, -1e6]]");
+    assert!(said.starts_with(&line(second)) && said.contains("`a` is out of range"), "{said}");
+    // An error that is not about what is in the file stays as it is.
+    let text = Text::new("m.toml", TEXT);
+    let other = || ModelFileError::Dimension { name: "m".into(), found: 2, wanted: 3 };
+    assert_eq!(text.locate(other()).to_string(), other().to_string());
 }
 
 proptest! {

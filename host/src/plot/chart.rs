@@ -110,6 +110,8 @@ pub struct Chart {
     pub cells: Vec<Cell>,
     /// Under the series.
     pub places: Vec<Place>,
+    /// Lines to compare with, under the series; they alone are nothing to show.
+    pub guides: Vec<Series>,
     /// What is drawn, the last on top.
     pub series: Vec<Series>,
     /// The range of x; what the points need if not given.
@@ -160,7 +162,20 @@ pub fn charts(charts: &[Chart], columns: usize, width: f64) -> Figure {
     Figure::from_svg(svg.finish(Vector2::new(width, bottom + EDGE)))
 }
 
+/// What is written where no series has a point and there is no cell.
+const NOTHING: &str = "nothing to show";
+
 impl Chart {
+    /// Guides and series, the last on top.
+    fn lines(&self) -> impl Iterator<Item = &Series> {
+        self.guides.iter().chain(&self.series)
+    }
+
+    /// Is there nothing in it but what it would have been compared with?
+    fn is_empty(&self) -> bool {
+        self.cells.is_empty() && self.series.iter().all(|s| s.points.is_empty())
+    }
+
     fn extent(&self) -> Extent {
         let bands = self.series.iter().flat_map(|s| match &s.mark {
             Mark::Band(low) => s.points.iter().zip(low).map(|((x, _), y)| (*x, *y)).collect(),
@@ -174,7 +189,7 @@ impl Chart {
             let half = c.side / 2.0;
             [(c.at.0 - half, c.at.1 - half), (c.at.0 + half, c.at.1 + half)]
         });
-        let points = self.series.iter().flat_map(|s| s.points.iter().copied());
+        let points = self.lines().flat_map(|s| s.points.iter().copied());
         let all = points.chain(bands).chain(outlines).chain(corners).map(|(x, y)| Point2::new(x, y));
         let unit = Extent { low: Point2::origin(), high: Point2::new(1.0, 1.0) };
         let found = Extent::around(all).unwrap_or(unit);
@@ -205,7 +220,7 @@ impl Chart {
                     Place::Goal(at) => svg.star(pixel(at), 8.0, ATTRACTOR),
                 }
             }
-            self.series.iter().for_each(|s| s.draw(svg, &pixel));
+            self.lines().for_each(|s| s.draw(svg, &pixel));
             for cell in &self.cells {
                 let size = (cell.side * axes.scale() * 0.36).min(FONT_SIZE);
                 let style = format!(
@@ -214,6 +229,10 @@ impl Chart {
                 svg.text(pixel(&cell.at) + Vector2::new(0.0, size * 0.36), Anchor::Middle, &style, &cell.label);
             }
         });
+        if self.is_empty() {
+            let middle = nalgebra::center(&axes.corner, &axes.end());
+            svg.text(middle, Anchor::Middle, "", NOTHING);
+        }
         axes.frame(svg, Some(&self.x), Some(&self.y));
         let middle = Point2::new((axes.corner.x + axes.end().x) / 2.0, axes.corner.y - 6.0);
         svg.text(middle, Anchor::Middle, "", &self.title);
@@ -276,22 +295,24 @@ fn shade(share: f64) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// Each name once; the lower end of the last line.
+/// Each name once, with a word where it has no point in any chart; the lower end of the last line.
 fn legend(svg: &mut Svg, charts: &[Chart], corner: Pixel, right: f64) -> f64 {
-    let mut known: Vec<&Series> = Vec::new();
-    for s in charts.iter().flat_map(|c| &c.series).filter(|s| !s.name.is_empty() && !s.points.is_empty()) {
-        if known.iter().all(|k| k.name != s.name) {
-            known.push(s);
+    let mut known: Vec<(&Series, String)> = Vec::new();
+    let all = || charts.iter().flat_map(Chart::lines).filter(|s| !s.name.is_empty());
+    for s in all() {
+        if known.iter().all(|(k, _)| k.name != s.name) {
+            let none = all().filter(|other| other.name == s.name).all(|other| other.points.is_empty());
+            known.push((s, if none { format!("{}: none", s.name) } else { s.name.clone() }));
         }
     }
     let mut at = corner + Vector2::new(0.0, FONT_SIZE);
-    for s in &known {
-        let width = 26.0 + text_width(&s.name) + 14.0;
+    for (s, name) in &known {
+        let width = 26.0 + text_width(name) + 14.0;
         if at.x + width - 14.0 > right && at.x > corner.x {
             at = Point2::new(corner.x, at.y + FONT_SIZE + 8.0);
         }
         s.sign(svg, at + Vector2::new(10.0, -4.0));
-        svg.text(at + Vector2::new(26.0, 0.0), Anchor::Start, "", &s.name);
+        svg.text(at + Vector2::new(26.0, 0.0), Anchor::Start, "", name);
         at.x += width;
     }
     if known.is_empty() { corner.y - EDGE } else { at.y }
@@ -306,6 +327,23 @@ mod tests {
         let s = Series::distribution("d", Colour::Pliant, &[1.0, 2.0, 2.0, 4.0]);
         assert_eq!((s.points[0], s.points[7]), ((1.0, 0.0), (4.0, 100.0)));
         assert!(s.points.windows(2).all(|w| w[0].0 <= w[1].0 && w[0].1 <= w[1].1));
+    }
+
+    #[test]
+    fn where_nothing_was_measured_the_chart_says_so() {
+        let guide = Series::line("the paper's", Colour::Letter, vec![(1.0, 0.0), (1.0, 9.0)]);
+        let empty = Chart {
+            series: vec![Series::distribution("places", Colour::Pliant, &[])],
+            guides: vec![guide],
+            ..Chart::default()
+        };
+        let text = charts(std::slice::from_ref(&empty), 1, 300.0).svg().to_owned();
+        assert!(text.contains(">nothing to show</text>") && text.contains(">places: none</text>"), "{text}");
+        assert!(!text.contains("NaN") && !text.contains("inf"));
+        let full = Chart { series: vec![Series::distribution("places", Colour::Pliant, &[1.0])], ..empty.clone() };
+        let both = charts(&[empty, full], 2, 600.0).svg().to_owned();
+        assert_eq!(both.matches(NOTHING).count(), 1);
+        assert!(both.contains(">places</text>") && !both.contains("places: none"));
     }
 
     #[test]

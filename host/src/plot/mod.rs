@@ -33,6 +33,7 @@ use std::path::Path;
 
 use nalgebra::{Point2, Vector2, Vector3};
 
+use crate::output;
 use crate::scene::{ConvertError, Scene};
 use figure::{Anchor, Axes, Svg};
 pub use gallery::{Tile, gallery};
@@ -74,12 +75,12 @@ pub enum PlotError {
     #[error("{0}: a figure's name ends in .svg or .png")]
     Format(String),
     /// The file cannot be written.
-    #[error("{path}: cannot be written: {source}")]
+    #[error("{path}: cannot be written: {problem}")]
     Unwritable {
         /// As it was given.
         path: String,
         /// What the system says.
-        source: io::Error,
+        problem: io::Error,
     },
     /// The scene cannot be evaluated at the time asked for.
     #[error(transparent)]
@@ -127,11 +128,8 @@ impl Figure {
             Format::Svg => self.svg.clone().into_bytes(),
             Format::Png => self.png()?,
         };
-        let unwritable = |source| PlotError::Unwritable { path: path.display().to_string(), source };
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(unwritable)?;
-        }
-        std::fs::write(path, bytes).map_err(unwritable)
+        output::write(path, bytes)
+            .map_err(|problem| PlotError::Unwritable { path: path.display().to_string(), problem })
     }
 }
 

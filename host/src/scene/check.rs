@@ -15,7 +15,7 @@ use super::file::{
 use super::motion::point;
 use super::obstacle::SceneObstacle;
 use super::{Goal, MAX_OBSTACLES, Method, Modulation, MotionSource, Scene, Steering, syntax};
-use crate::model::ModelFile;
+use crate::model::Text;
 
 mod obstacle;
 mod places;
@@ -109,19 +109,14 @@ fn model(
     let (found, text) = read_model(Path::new(path.get_ref()))
         .map_err(|e| error(format!("the model `{}` cannot be read: {e}", path.get_ref())))?;
     let refused = |e: crate::model::ModelFileError| {
-        error(format!("the model `{}` cannot be used: {e}", path.get_ref()))
+        error(format!("the model `{}` cannot be used", path.get_ref()))
             .allowing("a model file whose certificate holds; `pliant check MODEL.toml` says what is wrong with one")
             .because(e)
     };
-    let model = ModelFile::parse(&found.display().to_string(), &text).map_err(refused)?;
+    let text = Text::new(found.display().to_string(), text);
+    let model = text.model().map_err(refused)?;
     // The certificate has to hold in whichever precision the scene is going to run.
-    if model.dimension == 3 {
-        model.certify::<f64, 3>().map_err(refused)?;
-        model.certify::<f32, 3>().map_err(refused)?;
-    } else {
-        model.certify::<f64, 2>().map_err(refused)?;
-        model.certify::<f32, 2>().map_err(refused)?;
-    }
+    model.is_certified().map_err(|e| refused(text.locate(e)))?;
     let dimension = model.dimension;
     Ok((MotionSource::Model { path: found, model: Box::new(model) }, dimension))
 }

@@ -23,6 +23,11 @@ fn explain(source: &Source<'_>, error: &toml::de::Error) -> SceneError {
             .error(SceneErrorKind::Syntax, "", span, format!("not TOML: {problem}"))
             .allowing("a TOML file, as in scenes/sbend-foam.toml");
     };
+    if let (Some((key, _)), None) = (tables.get_ref().get_key_value("lyapunov"), tables.get_ref().get("ds")) {
+        return source
+            .error(SceneErrorKind::Unknown, "", key.span(), "this is a model, which is only the motion of a scene")
+            .allowing("a scene file with `[ds]` and `model = \"MODEL.toml\"`, a `[[start]]`, and obstacles, as in scenes/sbend-foam.toml");
+    }
     let field = field_at(tables.get_ref(), &span);
     let mut quoted = message.split('`').skip(1).step_by(2);
     if message.starts_with("unknown ") {

@@ -43,6 +43,14 @@ impl Column {
         }
     }
 
+    /// The same where there is little room.
+    pub fn short_title(self) -> &'static str {
+        match self {
+            Self::Original => "original",
+            Self::Letter(_) | Self::Pliant => self.title(),
+        }
+    }
+
     /// The part of a scene file that says so.
     pub fn toml(self) -> String {
         match self {

@@ -6,8 +6,9 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::table::Table;
-use crate::error::Error;
+use super::table::{Table, yes};
+use crate::error::{Error, counted};
+use crate::output;
 use crate::plot::Figure;
 
 /// Something that should hold, and whether it does.
@@ -19,11 +20,18 @@ pub struct Verdict {
     pub paper: String,
     /// What was measured.
     pub measured: String,
-    /// Does it hold?
-    pub holds: bool,
+    /// Does it hold? None where nothing was measured that could say.
+    pub holds: Option<bool>,
     /// Is it about arriving, keeping out of cores, or the same bits? A study fails where one of these does not hold; another that does not is what
     /// it found.
     pub vital: bool,
+}
+
+impl Verdict {
+    /// Was it measured not to hold?
+    pub fn fails(&self) -> bool {
+        self.holds == Some(false)
+    }
 }
 
 /// What a study found.
@@ -33,7 +41,7 @@ pub struct Findings {
     pub tables: Vec<Table>,
     /// Figures by the names of their files, without endings, each with what it shows.
     pub figures: Vec<(&'static str, String, Figure)>,
-    /// Scene files and models by name.
+    /// Scene files and models by their paths in the study's folder.
     pub files: Vec<(String, String)>,
     /// What should hold.
     pub verdicts: Vec<Verdict>,
@@ -58,24 +66,41 @@ impl Findings {
         }
     }
 
-    /// Does all hold that is vital?
+    /// Does nothing fail that is vital?
     pub fn is_well(&self) -> bool {
-        self.verdicts.iter().all(|v| v.holds || !v.vital)
+        !self.verdicts.iter().any(|v| v.fails() && v.vital)
+    }
+
+    /// How many claims fail, and whether that decides the exit code: a sentence.
+    pub fn conclusion(&self) -> String {
+        let claims = |of: &dyn Fn(&Verdict) -> bool| counted(self.verdicts.iter().filter(|v| of(v)).count(), "claim");
+        let code = u8::from(!self.is_well());
+        if !self.verdicts.iter().any(Verdict::fails) {
+            let open = self.verdicts.iter().filter(|v| v.holds.is_none()).count();
+            let but = if open > 0 { format!(" but {open} of which nothing was measured") } else { String::new() };
+            return format!("every claim holds{but}: exit code {code}");
+        }
+        let vital = claims(&|v| v.fails() && v.vital);
+        let other = claims(&|v| v.fails() && !v.vital);
+        format!(
+            "failing: {vital} about arriving, cores or bits, which alone decide the exit code ({code}); \
+             {other} about what else the paper says, which do not"
+        )
     }
 
     /// The verdicts as a table.
     pub fn verdict_table(&self) -> Table {
-        let mut table = Table::new("claims", "What should hold", &["claim", "paper", "measured", "holds"]);
+        let mut table =
+            Table::new("claims", "What should hold", &["claim", "paper", "measured", "holds", "decides the exit code"]);
         for v in &self.verdicts {
-            table.push([v.claim.clone(), v.paper.clone(), v.measured.clone(), super::table::yes(v.holds)]);
+            table.push([v.claim.clone(), v.paper.clone(), v.measured.clone(), held(v.holds), decides(v.vital)]);
         }
         table
     }
 
     /// All numbers, and the verdicts if there are any.
     pub fn to_json(&self) -> Value {
-        let verdict =
-            |v: &Verdict| json!({"claim": v.claim, "paper": v.paper, "measured": v.measured, "holds": v.holds});
+        let verdict = |v: &Verdict| json!({"claim": v.claim, "paper": v.paper, "measured": v.measured, "holds": v.holds, "vital": v.vital});
         let mut all = self.json.clone();
         if !self.verdicts.is_empty() {
             all.insert("verdicts".into(), self.verdicts.iter().map(verdict).collect());
@@ -101,10 +126,19 @@ impl Findings {
             let _ = writeln!(report, "![{caption}]({name}.png)\n\n{caption}\n");
         }
         for (name, text) in &self.files {
-            put(&folder.join("scenes").join(name), text)?;
+            put(&folder.join(name), text)?;
         }
         put(&folder.join("report.md"), &report)
     }
+}
+
+/// yes or NO; a dash where nothing was measured.
+fn held(holds: Option<bool>) -> String {
+    holds.map_or_else(|| "-".into(), yes)
+}
+
+fn decides(vital: bool) -> String {
+    if vital { "yes" } else { "no" }.into()
 }
 
 /// Makes the folder, and sees that a file can be written into it, before anything is computed for it.
@@ -120,8 +154,44 @@ pub fn prepare(folder: &Path) -> Result<(), Error> {
 
 fn put(path: &Path, text: &str) -> Result<(), Error> {
     let failed = |e: std::io::Error| Error::failed(format!("{}: cannot be written: {e}", path.display()));
-    if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder).map_err(failed)?;
+    output::write(path, text).map_err(failed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(verdicts: &[(Option<bool>, bool)]) -> Findings {
+        let verdict = |(holds, vital): &(Option<bool>, bool)| Verdict {
+            claim: "a claim".into(),
+            paper: "-".into(),
+            measured: "-".into(),
+            holds: *holds,
+            vital: *vital,
+        };
+        Findings { verdicts: verdicts.iter().map(verdict).collect(), ..Findings::default() }
     }
-    fs::write(path, text).map_err(failed)
+
+    #[test]
+    fn what_was_not_measured_neither_holds_nor_fails() {
+        let open = found(&[(None, true), (Some(true), false)]);
+        assert!(open.is_well());
+        assert_eq!(open.verdict_table().rows[0][3], "-");
+        assert_eq!(open.to_json()["verdicts"][0]["holds"], Value::Null);
+        assert_eq!(open.conclusion(), "every claim holds but 1 of which nothing was measured: exit code 0");
+    }
+
+    #[test]
+    fn only_what_is_vital_decides_the_exit_code() {
+        let other = found(&[(Some(true), true), (Some(false), false), (Some(false), false)]);
+        assert!(other.is_well());
+        let says = other.conclusion();
+        assert!(
+            says.contains("0 claims about arriving") && says.contains("(0)") && says.contains("2 claims about what")
+        );
+        let vital = found(&[(Some(false), true), (Some(true), false)]);
+        assert!(!vital.is_well());
+        assert!(vital.conclusion().contains("1 claim about arriving") && vital.conclusion().contains("(1)"));
+        assert_eq!(found(&[(Some(true), true)]).conclusion(), "every claim holds: exit code 0");
+    }
 }

@@ -62,14 +62,15 @@ impl Times {
     fn arrived(&self) -> usize {
         self.times.iter().flatten().count()
     }
-    /// Of those that arrived; no number where none did.
-    fn mean(&self) -> f64 {
-        self.times.iter().flatten().sum::<f64>() / self.arrived() as f64
+    /// Of those that arrived; none where none did.
+    fn mean(&self) -> Option<f64> {
+        let arrived = self.arrived();
+        (arrived > 0).then(|| self.times.iter().flatten().sum::<f64>() / arrived as f64)
     }
-    fn deviation(&self) -> f64 {
-        let mean = self.mean();
+    fn deviation(&self) -> Option<f64> {
+        let mean = self.mean()?;
         let squares = self.times.iter().flatten().map(|t| (t - mean).powi(2)).sum::<f64>();
-        (squares / self.arrived() as f64).sqrt()
+        Some((squares / self.arrived() as f64).sqrt())
     }
 }
 
@@ -109,13 +110,18 @@ pub fn study(skills: &Skills, done: &(dyn Fn(usize) + Sync)) -> Result<(Findings
         ]);
     }
     let ours: Vec<&Times> = found.iter().filter(|t| t.column == Column::Pliant).collect();
-    let falls = ours.windows(2).all(|w| w[1].mean() < w[0].mean()) && ours.iter().all(|t| t.arrived() == starts.len());
-    let ends = |all: &[&Times]| all.first().zip(all.last()).map_or((f64::NAN, f64::NAN), |(a, b)| (a.mean(), b.mean()));
-    let (first, last) = ends(&ours);
+    let falls = falls(&ours, starts.len());
+    let ends = |t: Option<&&Times>| number(t.and_then(|t| t.mean()), 2);
+    let (first, last) = (ends(ours.first()), ends(ours.last()));
+    let step = match falls {
+        Some(true) => "at every step",
+        Some(false) => "not at every step, or not from every start",
+        None => "none arrive",
+    };
     let verdict = Verdict {
         claim: "the time past the obstacle falls with every step of k from 1 to e^1.5".into(),
         paper: "falls".into(),
-        measured: format!("{first:.2} s to {last:.2} s, {}", if falls { "at every step" } else { "not at every step" }),
+        measured: format!("{first} s to {last} s, {step}"),
         holds: falls,
         vital: false,
     };
@@ -134,20 +140,45 @@ pub fn study(skills: &Skills, done: &(dyn Fn(usize) + Sync)) -> Result<(Findings
     Ok((findings, chart(&found)))
 }
 
+/// Does the time fall with every step, and do all arrive? None where none does.
+fn falls(ours: &[&Times], starts: usize) -> Option<bool> {
+    ours.iter().any(|t| t.arrived() > 0).then(|| {
+        let falls = |w: &[&Times]| w[0].mean().zip(w[1].mean()).is_some_and(|(before, after)| after < before);
+        ours.windows(2).all(falls) && ours.iter().all(|t| t.arrived() == starts)
+    })
+}
+
+/// Over how many the means are, by increasing k, where that is not all.
+fn survivors(of: &[&Times]) -> String {
+    if of.iter().all(|t| t.arrived() == t.times.len()) {
+        return String::new();
+    }
+    let starts = of.iter().map(|t| t.times.len()).max().unwrap_or(0);
+    let arrived: Vec<String> = of.iter().map(|t| t.arrived().to_string()).collect();
+    format!(", mean of those that arrive: {} of {starts}", arrived.join(", "))
+}
+
 fn chart(found: &[Times]) -> Chart {
     let mut series = Vec::new();
     let colours = [("original", Colour::Original), ("letter", Colour::Letter), ("pliant", Colour::Pliant)];
     for (key, colour) in colours {
-        let of: Vec<&Times> = found.iter().filter(|t| t.column.key() == key && t.arrived() > 0).collect();
+        let of: Vec<&Times> = found.iter().filter(|t| t.column.key() == key).collect();
         let Some(first) = of.first() else { continue };
-        let at = |f: &dyn Fn(&Times) -> f64| of.iter().map(|t| (t.exponent.exp(), f(t))).collect::<Vec<_>>();
+        let at = |by: f64| {
+            let one = |t: &&Times| Some((t.exponent.exp(), t.mean()? + by * t.deviation()?));
+            of.iter().filter_map(one).collect::<Vec<_>>()
+        };
         if key == "pliant" {
-            let low = of.iter().map(|t| t.mean() - t.deviation()).collect();
-            let points = at(&|t| t.mean() + t.deviation());
+            let (low, points) = (at(-1.0).into_iter().map(|(_, y)| y).collect(), at(1.0));
             series.push(Series { name: "one standard deviation".into(), colour, mark: Mark::Band(low), points });
         }
         let mark = if key == "original" { Mark::Dashed } else { Mark::Dotted };
-        series.push(Series { name: first.column.title().into(), colour, mark, points: at(&|t| t.mean()) });
+        series.push(Series {
+            name: format!("{}{}", first.column.title(), survivors(&of)),
+            colour,
+            mark,
+            points: at(0.0),
+        });
     }
     Chart {
         title: "(a) time past the obstacle".into(),
@@ -155,5 +186,28 @@ fn chart(found: &[Times]) -> Chart {
         y: "time (s)".into(),
         series,
         ..Chart::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn times(exponent: f64, times: &[Option<f64>]) -> Times {
+        Times { exponent, column: Column::Pliant, times: times.to_vec() }
+    }
+
+    #[test]
+    fn means_are_over_those_that_arrive_and_the_chart_says_how_many() {
+        let all = [times(0.0, &[Some(2.0), Some(4.0)]), times(0.5, &[Some(1.0), None])];
+        assert_eq!((all[0].mean(), all[0].deviation(), all[1].mean()), (Some(3.0), Some(1.0), Some(1.0)));
+        let found: Vec<&Times> = all.iter().collect();
+        assert_eq!((falls(&found, 2), falls(&found[..1], 2)), (Some(false), Some(true)));
+        assert_eq!(survivors(&found), ", mean of those that arrive: 2, 1 of 2");
+        assert_eq!(survivors(&found[..1]), "");
+        let chart = chart(&all);
+        assert!(chart.series.iter().any(|s| s.name == "Pliant's default, mean of those that arrive: 2, 1 of 2"));
+        let none = times(0.0, &[None, None]);
+        assert_eq!((none.mean(), falls(&[&none], 2)), (None, None));
     }
 }

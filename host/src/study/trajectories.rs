@@ -42,9 +42,10 @@ impl Runs {
     fn min_gamma(&self) -> f64 {
         self.drives.iter().map(Drive::min_gamma).fold(f64::INFINITY, f64::min)
     }
-    fn mean_time(&self) -> f64 {
+    /// Of those that arrive; none where none does.
+    fn mean_time(&self) -> Option<f64> {
         let times: Vec<f64> = self.drives.iter().filter(|d| d.reached).map(Drive::time).collect();
-        times.iter().sum::<f64>() / times.len().max(1) as f64
+        (!times.is_empty()).then(|| times.iter().sum::<f64>() / times.len() as f64)
     }
 }
 
@@ -129,7 +130,7 @@ pub fn study(skills: &Skills, seed: u64, done: &(dyn Fn(usize) + Sync)) -> Resul
         claim: "every motion, from wherever it starts, goes round the hard regions and arrives".into(),
         paper: "all".into(),
         measured: format!("{reached} of {count}, min Gamma {least:.3}"),
-        holds: reached == count && least > 1.0,
+        holds: (count > 0).then_some(reached == count && least > 1.0),
         vital: true,
     };
     let mut figures = Vec::new();

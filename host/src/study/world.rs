@@ -83,9 +83,10 @@ impl<'a> World<'a> {
         Self { skill, bodies, starts: vec![skill.start], tolerance: 0.01, timeout: 30.0 }
     }
 
-    /// The scene file; the model is beside it.
+    /// The scene file; the model is in the folder `models` beside its own.
     pub fn toml(&self, column: Column) -> String {
-        let mut text = format!("[ds]\nmodel = \"{}.toml\"\n{}", self.skill.name.to_lowercase(), column.toml());
+        let mut text =
+            format!("[ds]\nmodel = \"../models/{}.toml\"\n{}", self.skill.name.to_lowercase(), column.toml());
         let _ = writeln!(text, "[limits]\nspeed = {SPEED:?}");
         let _ = writeln!(text, "[goal]\ntolerance = {:?}\ntimeout = {:?}", self.tolerance, self.timeout);
         for start in &self.starts {

@@ -3,7 +3,7 @@
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use super::super::{Finished, print_json, progress};
+use super::super::{Finished, number, print_json, progress};
 use crate::error::{Error, Outcome};
 use crate::learn::{Options, Unit};
 use crate::study::findings;
@@ -11,6 +11,7 @@ use crate::study::lasa::{Found, Task, study};
 
 /// Options of `pliant study lasa`.
 #[derive(Clone, Debug, clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub struct Args {
     /// Folder with a file of demonstrations for each motion (.mat, .npz, .csv), or a folder of files for each.
     #[arg(long, value_name = "DIR")]
@@ -25,7 +26,7 @@ pub struct Args {
     #[arg(long)]
     unit: Option<Unit>,
     /// Seed of all random choices.
-    #[arg(long, default_value_t = Options::default().seed)]
+    #[arg(long, default_value_t = Options::default().seed, value_parser = number::seed)]
     seed: u64,
 }
 

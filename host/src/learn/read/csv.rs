@@ -4,11 +4,13 @@
 //! to the file's first time or before it. Any other step back in time is an error.
 
 use super::split::Splitter;
+use crate::error::counted;
 use crate::learn::demonstration::Demonstration;
 use crate::learn::error::LearnError;
 use nalgebra::DVector;
 
-const HEADER: &str = "t,x,y or t,x,y,z, separated by commas, in any order, with vx,vy[,vz] and demo if there are any";
+const HEADER: &str =
+    "a header t,x,y or t,x,y,z, separated by commas, in any order, with vx,vy[,vz] and demo if there are any";
 
 /// Reads the demonstrations of one file. `name` is used in messages and in [`Demonstration::name`].
 pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Demonstration>, LearnError> {
@@ -21,6 +23,9 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Demonstration>, LearnError> 
     };
 
     let header = reader.headers().map_err(broken)?.clone();
+    if header.iter().all(str::is_empty) {
+        return Err(fail(1, "the file is empty".into(), HEADER));
+    }
     let columns =
         Columns::find(&header).ok_or_else(|| fail(1, format!("the header is `{}`", join(&header)), HEADER))?;
 
@@ -29,7 +34,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Demonstration>, LearnError> 
         let record = record.map_err(broken)?;
         let line = record.position().map_or(0, csv::Position::line);
         if record.len() != header.len() {
-            let problem = format!("it has {} fields and the header {}", record.len(), header.len());
+            let problem = format!("it has {} and the header {}", counted(record.len(), "field"), header.len());
             return Err(fail(line, problem, "one field a column"));
         }
         let number = |i: usize| -> Result<f64, LearnError> {
@@ -147,7 +152,8 @@ mod tests {
     fn each_mistake_has_its_sentence() {
         assert!(refused("a,b\n1,2\n").starts_with("a.csv, line 1: the header is `a,b`"));
         assert!(refused("t,x,y,speed\n1,2,3,4\n").contains("line 1: the header"));
-        assert!(refused("").contains("line 1: the header is ``"));
+        assert!(refused("").contains("line 1: the file is empty; allowed is a header t,x,y or"));
+        assert!(refused("\n\n").contains("line 1: the file is empty"));
         assert!(refused("t,x,y\n").contains("a.csv: it is empty"));
         assert!(refused("t,x,y\n0,1,2\n").contains("one sample"));
         assert!(refused("t,x,y\n0,1,2\n1,one,2\n").contains("line 3: column x: `one` is not a number"));

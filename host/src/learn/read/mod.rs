@@ -33,11 +33,8 @@ pub fn recordings(paths: &[PathBuf], unit: Option<Unit>) -> Result<Vec<Demonstra
     let mut items = Vec::new();
     for path in paths {
         let file = path.display().to_string();
-        if !path.exists() {
-            return Err(LearnError::Unreadable { file, source: std::io::ErrorKind::NotFound.into() });
-        }
-        if path.is_dir() {
-            let unreadable = |source| LearnError::Unreadable { file: file.clone(), source };
+        let unreadable = |problem| LearnError::Unreadable { file: file.clone(), problem };
+        if fs::metadata(path).map_err(unreadable)?.is_dir() {
             let mut inside = Vec::new();
             for entry in fs::read_dir(path).map_err(unreadable)? {
                 let entry = entry.map_err(unreadable)?.path();
@@ -87,7 +84,7 @@ fn read_file(path: &Path, unit: Option<Unit>) -> Result<Vec<Demonstration>, Lear
 /// All bytes of a file, where they are not more than any file of this kind has.
 pub fn bytes_of(path: &Path) -> Result<Vec<u8>, LearnError> {
     let file = path.display().to_string();
-    let unreadable = |source| LearnError::Unreadable { file: file.clone(), source };
+    let unreadable = |problem| LearnError::Unreadable { file: file.clone(), problem };
     let mut bytes = Vec::new();
     // Not the size that the system tells: a device has none.
     File::open(path).and_then(|f| f.take(MOST_BYTES + 1).read_to_end(&mut bytes)).map_err(unreadable)?;

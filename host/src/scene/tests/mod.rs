@@ -90,11 +90,15 @@ fn a_bad_model_is_the_scenes_fault_at_its_line() {
         [[component]]\nprior = 1.0\nmean = [0.0, 0.0]\ncovariance = [[1.0, 0.0], [0.0, 1.0]]\na = [[-1.0, 0.0], [0.0, -1.0]]\n";
     assert!(model(good).is_ok());
     let unstable = good.replace("a = [[-1.0", "a = [[1.0");
-    for (text, word) in [("format = ", "m.toml"), (unstable.as_str(), "not negative definite")] {
+    let certificate =
+        "m.toml, line 10: model `m` has no valid certificate: component 1: a' P + P a is not negative definite";
+    for (text, word) in [("format = ", "m.toml, line 1: "), (unstable.as_str(), certificate)] {
         let error = model(text).unwrap_err();
         assert_eq!((error.kind(), error.line(), error.field()), (SceneErrorKind::Model, Some(2), "ds.model"));
-        assert!(error.to_string().contains(word), "{error}");
-        assert!(error.diagnostic_source().is_some());
+        let cause = error.diagnostic_source().unwrap().to_string();
+        assert!(cause.starts_with(word), "{cause}");
+        // Said once: not in the sentence and in its cause.
+        assert!(error.to_string().ends_with("the model `m.toml` cannot be used"), "{error}");
     }
 }
 

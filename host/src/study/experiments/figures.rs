@@ -32,7 +32,7 @@ pub fn side_by_side(all: &[Outcome<'_>], ids: &[&str], columns: usize) -> Result
     let tiles: Vec<Tile<'_>> = some
         .iter()
         .zip(&paths)
-        .map(|(o, path)| tile(o, path, format!("{}: {}", o.case.id, if o.case.ours { "ours" } else { "original" })))
+        .map(|(o, path)| tile(o, path, format!("{}: {}", o.case.id, o.column.short_title())))
         .collect();
     Ok(gallery(&tiles, columns, COLUMN)?)
 }
@@ -105,13 +105,11 @@ pub fn spread(spread: &Spread, paper: [f64; 2]) -> Figure {
         title: title.into(),
         x: "change of mean speed (%)".into(),
         y: "places (%)".into(),
-        series: vec![
-            Series::distribution("places on the path: no more than this", Colour::Pliant, values),
-            Series {
-                mark: crate::plot::chart::Mark::Dashed,
-                ..Series::line("the paper's figure", Colour::Letter, vec![(paper, 0.0), (paper, 100.0)])
-            },
-        ],
+        series: vec![Series::distribution("places on the path: no more than this", Colour::Pliant, values)],
+        guides: vec![Series {
+            mark: crate::plot::chart::Mark::Dashed,
+            ..Series::line("the paper's figure", Colour::Letter, vec![(paper, 0.0), (paper, 100.0)])
+        }],
         y_range: Some((0.0, 100.0)),
         ..Chart::default()
     };

@@ -116,8 +116,9 @@ pub fn study(
         ));
     }
     for o in &all {
-        found.files.push((format!("{}-{}.toml", o.case.id, o.column.key()), o.case.world.toml(o.column)));
-        let model = (format!("{}.toml", o.case.world.skill.name.to_lowercase()), o.case.world.skill.text.clone());
+        found.files.push((format!("scenes/{}-{}.toml", o.case.id, o.column.key()), o.case.world.toml(o.column)));
+        let model =
+            (format!("models/{}.toml", o.case.world.skill.name.to_lowercase()), o.case.world.skill.text.clone());
         if !found.files.contains(&model) {
             found.files.push(model);
         }
@@ -199,11 +200,12 @@ fn device_table(all: &[Compared]) -> Table {
 
 fn verdicts(skills: &Skills, all: &[Outcome<'_>], places: &Spread, on_device: &[Compared]) -> Vec<Verdict> {
     let claims = Claims::of(all, Column::Pliant.key());
-    let near = |measured: Option<f64>, paper: f64| measured.is_some_and(|m| (m - paper).abs() <= TOLERANCE);
+    let near = |measured: Option<f64>, paper: f64| measured.map(|m| (m - paper).abs() <= TOLERANCE);
     let note = if skills.lasa { "" } else { " (the paper's is on LASA handwriting)" };
     let percent = |x: Option<f64>| format!("{} %", signed(x, 2));
     let find = |id: &str| all.iter().find(|o| o.case.id == id && !matches!(o.column, Column::Letter(_)));
-    let off = |id: &str| find(id).map_or(f64::NAN, |o| o.deviation().0);
+    let off = |id: &str| find(id).map(|o| o.deviation().0);
+    let millimetres = |x: Option<f64>| number(x.map(|x| x * 1e3), 1);
     let well = all.iter().filter(|o| !matches!(o.column, Column::Letter(_)));
     let (well, count) = well.fold((0, 0), |(well, count), o| (well + usize::from(o.is_well()), count + 1));
     let faster = places.soft.iter().filter(|x| **x > 0.0).count();
@@ -228,14 +230,18 @@ fn verdicts(skills: &Skills, all: &[Outcome<'_>], places: &Spread, on_device: &[
             claim: "every experiment reaches the goal and touches no core".into(),
             paper: "all".into(),
             measured: format!("{well} of {count}"),
-            holds: well == count,
+            holds: (count > 0).then_some(well == count),
             vital: true,
         },
         Verdict {
             claim: "A1 follows the path without obstacles closer than A2".into(),
             paper: "yes".into(),
-            measured: format!("{:.1} mm against {:.1} mm off it, in the mean", off("A1") * 1e3, off("A2") * 1e3),
-            holds: off("A1") < off("A2"),
+            measured: format!(
+                "{} mm against {} mm off it, in the mean",
+                millimetres(off("A1")),
+                millimetres(off("A2"))
+            ),
+            holds: off("A1").zip(off("A2")).map(|(a1, a2)| a1 < a2),
             vital: false,
         },
         Verdict {
@@ -250,7 +256,8 @@ fn verdicts(skills: &Skills, all: &[Outcome<'_>], places: &Spread, on_device: &[
                 places.void.0,
                 places.void.1
             ),
-            holds: (faster, slower, places.failed) == (places.soft.len(), places.intersection.len(), 0),
+            holds: (!places.soft.is_empty() || !places.intersection.is_empty())
+                .then_some((faster, slower, places.failed) == (places.soft.len(), places.intersection.len(), 0)),
             vital: false,
         },
     ];
@@ -258,7 +265,7 @@ fn verdicts(skills: &Skills, all: &[Outcome<'_>], places: &Spread, on_device: &[
         claim: format!("{} on {}: the bits of the virtual device", c.id, c.device),
         paper: "-".into(),
         measured: format!("{} ticks, {}", c.ticks, if c.identical { "identical" } else { "different" }),
-        holds: c.identical && c.reached && c.min_gamma > 1.0,
+        holds: Some(c.identical && c.reached && c.min_gamma > 1.0),
         vital: true,
     }));
     out

@@ -79,7 +79,8 @@ pub fn figure(all: &[Angle]) -> Figure {
                 .filter_map(|a| Some((f64::from(a.degrees?), a.change?)))
                 .collect::<Vec<_>>()
         };
-        let level = of.iter().find(|a| a.degrees.is_none()).and_then(|a| a.change).unwrap_or(f64::NAN);
+        let level = of.iter().find(|a| a.degrees.is_none()).and_then(|a| a.change);
+        let level = level.map_or_else(Vec::new, |level| vec![(-180.0, level), (180.0, level)]);
         let changes = || all.iter().filter_map(|a| a.change).chain([0.0]);
         let (lowest, highest) = (changes().fold(0.0, f64::min) - 5.0, changes().fold(0.0, f64::max) + 5.0);
         let chosen = f64::from(THETA.to_degrees().round() as i32);
@@ -88,10 +89,12 @@ pub fn figure(all: &[Angle]) -> Figure {
             title: title.into(),
             x: "theta_2 (degrees)".into(),
             y: "change of speed (%)".into(),
-            series: vec![
-                dashed("original", Colour::Original, vec![(-180.0, 0.0), (180.0, 0.0)]),
-                Series::line("with the flow (default)", Colour::Pliant, vec![(-180.0, level), (180.0, level)]),
+            guides: vec![
+                dashed(Column::Original.title(), Colour::Original, vec![(-180.0, 0.0), (180.0, 0.0)]),
                 dashed("theta_2 of the other studies", Colour::Reference, vec![(chosen, lowest), (chosen, highest)]),
+            ],
+            series: vec![
+                Series::line("Pliant's default: with the flow", Colour::Pliant, level),
                 Series::line("paper to the letter", Colour::Letter, points(false)),
                 Series {
                     mark: Mark::Dots,

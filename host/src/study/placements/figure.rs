@@ -23,7 +23,8 @@ pub fn distributions(all: &[Passed]) -> Figure {
             x: q.unit.into(),
             y: "runs (%)".into(),
             series: series.map(|((column, colour), v)| Series::distribution(column.title(), colour, v)).collect(),
-            x_range: Some((low - room, high + room)),
+            // Without a value there is no range.
+            x_range: (low <= high).then_some((low - room, high + room)),
             y_range: Some((0.0, 100.0)),
             ..Chart::default()
         }
