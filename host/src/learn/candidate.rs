@@ -14,8 +14,6 @@ use nalgebra::{SMatrix, SVector};
 const INSIDE: f64 = 1.1;
 /// A sample moved farther than this, in extents, is learnt in both places.
 const MOVED: f64 = 3e-3;
-/// Rounds of refinement: of velocities alone, with rollouts along the reference paths, with rollouts along what was shown.
-const ROUNDS: [usize; 3] = [20, 15, 10];
 /// Errors of the same weight, as parts of the extent, of the mean speed, and of one.
 const SAME_PATH: f64 = 0.02;
 const SAME_SPEED: f64 = 0.14;
@@ -30,6 +28,25 @@ pub enum Grouping {
     Mixture,
     /// By how far along its demonstration a sample is, in length, turning and time.
     Segments,
+}
+
+/// How long a start is refined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// Until most motions gain little.
+    Usual,
+    /// Longer along what was shown, for those that are still poor.
+    More,
+}
+
+impl Effort {
+    /// Rounds of refinement: of velocities alone, with rollouts along the reference paths, with rollouts along what was shown.
+    fn rounds(self) -> [usize; 3] {
+        match self {
+            Self::Usual => [20, 15, 10],
+            Self::More => [20, 10, 25],
+        }
+    }
 }
 
 /// What every attempt at one skill shares, in normalised units.
@@ -56,11 +73,13 @@ pub struct Candidate<const D: usize> {
     pub mixture: Mixture<D>,
     /// Its errors, in multiples of a good model's.
     pub score: f64,
+    /// The part of it that is the path's.
+    pub path: f64,
 }
 
 impl<const D: usize> Lesson<'_, D> {
     /// Learns with this many components; `None` where no start works.
-    pub fn attempt(&self, components: usize, grouping: Grouping) -> Option<Candidate<D>> {
+    pub fn attempt(&self, components: usize, grouping: Grouping, effort: Effort) -> Option<Candidate<D>> {
         let rate = self.sigma * INSIDE;
         // No skill waits: where a demonstrator does, most of all at the start, it goes on.
         let going: Vec<_> = self.shown.iter().map(beside::going).collect();
@@ -106,15 +125,16 @@ impl<const D: usize> Lesson<'_, D> {
         }
         let followed: Vec<_> = moved.into_iter().map(|m| m.0.after_start()).collect();
         let shown: Vec<_> = self.shown.iter().map(Track::after_start).collect();
+        let [alone, along, to_the_end] = effort.rounds();
         let weights = Weights { path: 0.0, pace: self.pace, ..Weights::default() };
         let mut task = Task { x: &targets.x, v: &targets.v, belief: &belief, tracks: &followed, weights };
-        field = improve(field, &task, ROUNDS[0]);
+        field = improve(field, &task, alone);
         task.weights.path = Weights::default().path;
-        field = improve(field, &task, ROUNDS[1]);
+        field = improve(field, &task, along);
         // Near enough to follow through to the end, whatever happens on the way.
         task.weights.leash = f64::INFINITY;
         task.tracks = &shown;
-        field = improve(field, &task, ROUNDS[2]);
+        field = improve(field, &task, to_the_end);
 
         let mixture = field.mixture()?;
         let motion = Motion {
@@ -124,8 +144,9 @@ impl<const D: usize> Lesson<'_, D> {
         };
         let recordings: Vec<_> =
             self.shown.iter().map(|t| Recording { t: t.t.clone(), x: t.x.clone(), v: t.v.clone() }).collect();
-        let score = score(&quality::measure(&motion, &recordings, 1.0));
-        score.is_finite().then_some(Candidate { field, mixture, score })
+        let quality = quality::measure(&motion, &recordings, 1.0);
+        let (score, path) = (score(&quality), quality.path_error / SAME_PATH);
+        score.is_finite().then_some(Candidate { field, mixture, score, path })
     }
 }
 

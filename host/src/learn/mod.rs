@@ -32,7 +32,7 @@ pub use read::read;
 pub use warning::Warning;
 
 use crate::model::{ComponentFile, FORMAT, ModelFile, Provenance, rounded};
-use candidate::{Candidate, Grouping, Lesson};
+use candidate::{Candidate, Effort, Grouping, Lesson};
 use evaluate::Motion;
 use gmm::{MAX_COMPONENTS, Mixture};
 use nalgebra::{SMatrix, SVector};
@@ -144,15 +144,17 @@ fn fixed<const D: usize>(all: &[nalgebra::DVector<f64>]) -> Vec<SVector<f64, D>>
 }
 
 /// What is tried where the number of components is not given. The last ones only where all before are poor.
-const ATTEMPTS: [(usize, Grouping); 5] = [
-    (6, Grouping::Segments),
-    (12, Grouping::Mixture),
-    (12, Grouping::Segments),
-    (14, Grouping::Segments),
-    (16, Grouping::Segments),
+const ATTEMPTS: [(usize, Grouping, Effort); 5] = [
+    (6, Grouping::Segments, Effort::Usual),
+    (12, Grouping::Mixture, Effort::Usual),
+    (12, Grouping::Segments, Effort::Usual),
+    (12, Grouping::Mixture, Effort::More),
+    (12, Grouping::Segments, Effort::More),
 ];
 /// A score that leaves something to wish for.
 const POOR: f64 = 6.0;
+/// How much more than otherwise the path counts among those that are poor: velocities they cannot have, so what is left to choose is where they go.
+const FOLLOW: f64 = 2.0;
 /// What a component has to gain: a device evaluates every one in every tick.
 const PRICE: f64 = 0.01;
 
@@ -172,8 +174,8 @@ fn learn_in<const D: usize>(
     let tracks = tracks(&recordings, demonstrations.shifts(), &scale);
     let most = most_components(&demonstrations);
     let attempts: Vec<_> = match options.components {
-        Some(k) => vec![(k, Grouping::Mixture), (k, Grouping::Segments)],
-        None => ATTEMPTS.map(|(k, grouping)| (k.min(most), grouping)).to_vec(),
+        Some(k) => [Grouping::Mixture, Grouping::Segments].map(|grouping| (k, grouping, Effort::Usual)).to_vec(),
+        None => ATTEMPTS.map(|(k, grouping, effort)| (k.min(most), grouping, effort)).to_vec(),
     };
     progress(0.0);
     let sigma = options.sigma * scale.length / scale.speed;
@@ -185,24 +187,26 @@ fn learn_in<const D: usize>(
         pace: options.pace,
         seed: options.seed,
     };
-    let mut best: Option<(f64, ModelFile)> = None;
+    let mut best: Option<(f64, f64, ModelFile)> = None;
     let mut failure = String::from("no mixture fits the samples");
-    for (i, &(k, grouping)) in attempts.iter().enumerate() {
-        if attempts[..i].contains(&(k, grouping)) || i > 2 && best.as_ref().is_some_and(|b| b.0 < POOR) {
+    for (i, &(k, grouping, effort)) in attempts.iter().enumerate() {
+        if attempts[..i].contains(&(k, grouping, effort)) || i > 2 && best.as_ref().is_some_and(|b| b.0 < POOR) {
             continue;
         }
-        if let Some(candidate) = lesson.attempt(k, grouping) {
-            let score = candidate.score * (1.0 + PRICE * candidate.mixture.len() as f64);
-            if best.as_ref().is_none_or(|b| score < b.0) {
+        let follow = if i > 2 { FOLLOW } else { 0.0 };
+        if let Some(candidate) = lesson.attempt(k, grouping, effort) {
+            let price = 1.0 + PRICE * candidate.mixture.len() as f64;
+            let (score, path) = (candidate.score * price, candidate.path * price);
+            if best.as_ref().is_none_or(|b| score + follow * path < b.0 + follow * b.1) {
                 match model_of(candidate, sigma, &scale, options) {
-                    Ok(model) => best = Some((score, model)),
+                    Ok(model) => best = Some((score, path, model)),
                     Err(reason) => failure = reason,
                 }
             }
         }
         progress((i + 1) as f64 / (attempts.len() + 1) as f64);
     }
-    let Some((_, mut model)) = best else { return Err(LearnError::Fit { reason: failure }) };
+    let Some((.., mut model)) = best else { return Err(LearnError::Fit { reason: failure }) };
     let Some(motion) = motion_of::<D>(&model) else { return Err(LearnError::Fit { reason: failure }) };
     let quality = quality::measure(&motion, &recordings, demonstrations.extent());
     // The proof of what will run, free of rounding itself.
