@@ -7,7 +7,7 @@ use std::fmt;
 pub const GAIN: f64 = 0.05;
 
 /// theta_2 where the paper is followed to the letter, rad (40 degrees). It gives none: of all multiples of ten degrees this one and 50 come nearest to
-/// both of its figures for speed. See [`super::placements`] for what others do.
+/// both of its figures for speed (50 a little nearer). See [`super::placements`] for what others do.
 pub const THETA: f64 = 2.0 * std::f64::consts::PI / 9.0;
 
 /// A way to compute the velocity.
