@@ -187,5 +187,12 @@ fn lasa_handwriting_is_learnt_better_than_by_others() {
             assert!(number(&found["medians"][key]) < number(&peer[key]), "{key}: {peer}");
         }
     }
+    // What the README says is aimed at; these are of the handwriting at its recorded size.
+    for (key, most) in [("rmse_mm_s", 3.5), ("e_dot", 0.034), ("dtwd_mm", 300.0)] {
+        assert!(number(&found["medians"][key]) <= most, "{key}: {}", found["medians"]);
+    }
+    for motion in found["motions"].as_array().unwrap() {
+        assert!(number(&motion["dtwd_mm"]) <= 1000.0, "{motion}");
+    }
     check_files(&folder.0.join("out"), found["motions"].as_array().unwrap().len());
 }

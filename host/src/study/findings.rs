@@ -22,7 +22,7 @@ pub struct Verdict {
     pub measured: String,
     /// Does it hold? None where nothing was measured that could say.
     pub holds: Option<bool>,
-    /// Is it about arriving, keeping out of cores, or the same bits? A study fails where one of these does not hold; another that does not is what
+    /// Is it about keeping out of cores, the same bits, or arriving in what the paper shows? A study fails where one of these does not hold; another that does not is what
     /// it found.
     pub vital: bool,
 }
@@ -83,8 +83,8 @@ impl Findings {
         let vital = claims(&|v| v.fails() && v.vital);
         let other = claims(&|v| v.fails() && !v.vital);
         format!(
-            "failing: {vital} about arriving, cores or bits, which alone decide the exit code ({code}); \
-             {other} about what else the paper says, which do not"
+            "failing: {vital} about cores, bits, or arriving in what the paper shows, which alone decide the exit code ({code}); \
+             {other} about anything else, which do not"
         )
     }
 

@@ -28,7 +28,8 @@ const FAR: f64 = 0.03;
 #[derive(Clone, Copy, Debug)]
 struct Measured {
     reached: bool,
-    touched: bool,
+    /// Was Gamma below 1? A robot that rests on a surface, at 1, stalls.
+    entered: bool,
     stalled: bool,
     time: f64,
     min_gamma: f64,
@@ -44,7 +45,7 @@ impl Measured {
         let still = |s: &super::drive::Step| s.velocity.norm() < STALLED && (s.position - goal).norm() > FAR;
         Self {
             reached: drive.reached,
-            touched: drive.touched(),
+            entered: drive.min_gamma() < 1.0,
             // The first step stands: the robot has not been told anything yet.
             stalled: drive.steps.iter().skip(1).any(still),
             time: drive.time(),
@@ -130,7 +131,7 @@ const COUNTS: [Count; 5] = [
         Some(p.speed_change(c)? < 0.0)
     }),
     ("stalled on the way", "stalled", |p, c| Some(p.runs[c].stalled)),
-    ("entered a hard core", "penetrated", |p, c| Some(p.runs[c].touched)),
+    ("entered a hard core", "penetrated", |p, c| Some(p.runs[c].entered)),
     ("guard acted", "guarded", |p, c| Some(p.runs[c].guarded > 0.0)),
 ];
 
@@ -262,8 +263,7 @@ fn verdicts(all: &[Passed]) -> Vec<Verdict> {
         let of = |c| if what == 0 { all.len() - count(0, c) } else { count(what, c) };
         [of(0), of(1), of(2)]
     });
-    let said =
-        |c: usize| format!("{} do not arrive, {} stall, {} are slower in the layer", late[c], stalled[c], slower[c]);
+    let met = |c: usize| share(all, None, |p| COUNTS[1].2(p, c)).1;
     let measured = !all.is_empty();
     vec![
         Verdict {
@@ -274,10 +274,19 @@ fn verdicts(all: &[Passed]) -> Vec<Verdict> {
             vital: true,
         },
         Verdict {
-            claim: "all arrive, and none is slower in a soft layer than by the original method".into(),
+            claim: "all arrive, and none stalls".into(),
             paper: "-".into(),
-            measured: format!("{}; to the letter {}; original: {} do not arrive", said(1), said(0), late[2]),
-            holds: measured.then_some(late[1] + stalled[1] + slower[1] == 0),
+            measured: [("", 1), ("; to the letter ", 0), ("; original: ", 2)]
+                .map(|(who, c)| format!("{who}{} do not arrive, {} stall", late[c], stalled[c]))
+                .concat(),
+            holds: measured.then_some(late[1] + stalled[1] == 0),
+            vital: false,
+        },
+        Verdict {
+            claim: "none is slower in a soft layer than by the original method".into(),
+            paper: "-".into(),
+            measured: format!("{} of {} that meet it; to the letter {} of {}", slower[1], met(1), slower[0], met(0)),
+            holds: (met(1) > 0).then_some(slower[1] == 0),
             vital: false,
         },
     ]

@@ -248,11 +248,12 @@ fn verdicts(skills: &Skills, all: &[Outcome<'_>], places: &Spread, on_device: &[
             claim: "faster in a soft layer, slower in an intersection, wherever the obstacles are".into(),
             paper: "-".into(),
             measured: format!(
-                "faster at {faster} of {} places ({}), slower at {slower} of {} ({}); at {} more the original never arrives, and at {} of these neither does the default",
+                "faster at {faster} of {} places ({}), slower at {slower} of {} ({}); at {} more a path does not meet what is compared; at {} the original never arrives, and at {} of these neither does the default",
                 places.soft.len(),
                 range(&places.soft),
                 places.intersection.len(),
                 range(&places.intersection),
+                places.unmet,
                 places.void.0,
                 places.void.1
             ),
@@ -297,7 +298,7 @@ fn numbers(all: &[Outcome<'_>], places: &Spread, on_device: &[Compared]) -> Map<
         let ends = |all: &[f64]| json!({ "least": all.first(), "median": super::measure::quantile(all, 0.5), "most": all.last(), "places": all.len() });
         first.insert(
             "spread".into(),
-            json!({ "soft": ends(&places.soft), "intersection": ends(&places.intersection), "failed": places.failed, "original_failed": places.void.0, "both_failed": places.void.1 }),
+            json!({ "soft": ends(&places.soft), "intersection": ends(&places.intersection), "failed": places.failed, "unmet": places.unmet, "original_failed": places.void.0, "both_failed": places.void.1 }),
         );
     }
     let mut json = Map::new();

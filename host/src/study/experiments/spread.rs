@@ -17,18 +17,21 @@ pub struct Spread {
     pub soft: Vec<f64>,
     /// Where two layers overlap, likewise.
     pub intersection: Vec<f64>,
-    /// Places at which the default missed the goal or touched a core though the original method did not.
+    /// Places at which the default touched a core, or missed the goal though the original method did not.
     pub failed: usize,
+    /// Places at which one of the two never met the layer, or the overlap: nothing to compare.
+    pub unmet: usize,
     /// Places at which the original method did, which leaves nothing to compare with; and those of them at which the default did too.
     pub void: (usize, usize),
 }
 
 /// Shares of the path at which obstacles are put.
-const SHARES: [f64; 9] = [0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65];
+const SHARES: [f64; 18] =
+    [0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
 /// How far to the left of the path the cylinder is, m.
 const LEFT: [f64; 6] = [-0.04, -0.025, -0.01, 0.01, 0.025, 0.04];
-/// How far apart the cores of a pair are, m.
-const GAPS: [f64; 3] = [0.015, 0.0175, 0.02];
+/// How far apart the cores of a pair are, m: from hardly passable to layers that hardly overlap.
+const GAPS: [f64; 6] = [0.0125, 0.015, 0.0175, 0.02, 0.025, 0.03];
 
 /// Over places along the whole path and on both sides of it.
 ///
@@ -47,29 +50,32 @@ pub fn spread(skill: &Skill, done: &(dyn Fn(usize) + Sync)) -> Result<Spread, Er
             // A core on the start or the goal is a place that cannot be.
             let Ok(scene) = world.scene("place", column) else { return Ok(None) };
             let run = drive(&scene, &skill.start, &Driving::of(Robot::Lagging), None)?;
-            Ok::<_, Error>(Some((mean_speed(&run, within), run.reached && !run.touched())))
+            Ok::<_, Error>(Some((mean_speed(&run, within), run.reached, run.touched())))
         };
         let (ours, original) = (of(Column::Pliant)?, of(Column::Original)?);
-        Ok(ours.zip(original).map(|((ours, well), (original, comparable))| {
+        Ok(ours.zip(original).map(|((ours, arrived, touched), (original, by_original, on_original))| {
             let change = ours.zip(original).map(|(ours, original)| change_percent(ours, original));
-            Place { single: *single, well, comparable, change: change.filter(|_| comparable) }
+            Place { single: *single, arrived, touched, comparable: by_original && !on_original, change }
         }))
     })?;
     let all = || found.iter().flatten();
-    let changes = |single: bool| sorted(all().filter(|p| p.single == single).filter_map(|p| p.change));
+    let changes = |single: bool| sorted(all().filter(|p| p.single == single && p.comparable).filter_map(|p| p.change));
     let void = || all().filter(|p| !p.comparable);
     Ok(Spread {
         soft: changes(true),
         intersection: changes(false),
-        failed: all().filter(|p| p.comparable && !p.well).count(),
-        void: (void().count(), void().filter(|p| !p.well).count()),
+        failed: all().filter(|p| p.touched || (p.comparable && !p.arrived)).count(),
+        unmet: all().filter(|p| p.comparable && p.change.is_none()).count(),
+        void: (void().count(), void().filter(|p| !p.arrived || p.touched).count()),
     })
 }
 
 /// What came of a place.
 struct Place {
     single: bool,
-    well: bool,
+    arrived: bool,
+    touched: bool,
+    /// Did the original method arrive, and touch nothing?
     comparable: bool,
     change: Option<f64>,
 }
