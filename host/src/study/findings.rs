@@ -187,11 +187,11 @@ mod tests {
         assert!(other.is_well());
         let says = other.conclusion();
         assert!(
-            says.contains("0 claims about arriving") && says.contains("(0)") && says.contains("2 claims about what")
+            says.contains("0 claims about cores") && says.contains("(0)") && says.contains("2 claims about anything")
         );
         let vital = found(&[(Some(false), true), (Some(true), false)]);
         assert!(!vital.is_well());
-        assert!(vital.conclusion().contains("1 claim about arriving") && vital.conclusion().contains("(1)"));
+        assert!(vital.conclusion().contains("1 claim about cores") && vital.conclusion().contains("(1)"));
         assert_eq!(found(&[(Some(true), true)]).conclusion(), "every claim holds: exit code 0");
     }
 }
