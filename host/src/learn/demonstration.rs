@@ -12,6 +12,8 @@ use std::collections::hash_map::Entry;
 pub const END_TOLERANCE: f64 = 0.05;
 /// From here on, as a part of the extent, a person is told that they end apart.
 const ENDS_DIFFER: f64 = 0.02;
+/// Fewer samples than these are too few to know the motion by.
+const FEW: usize = 20;
 /// A step between two samples of this part of the size is a gap.
 const JUMP: f64 = 0.2;
 /// Noise of this part of the size is much.
@@ -140,6 +142,13 @@ impl Demonstration {
         }
         if !(size.is_finite() && samples.duration().is_finite()) {
             return fail("its values overflow".into(), "positions of a robot and times in seconds");
+        }
+        // Given velocities that never go along with the positions cannot be meant, whatever their unit.
+        if velocity_factor(&samples).is_some_and(|factor| factor <= 0.0) {
+            return fail("its velocities do not go where its positions do".into(), "velocities along the motion");
+        }
+        if samples.len() < FEW {
+            warnings.push(Warning::Few { demonstration: name.clone(), samples: samples.len(), wanted: FEW });
         }
         let samples = clean(&name, samples, size, &mut warnings);
         Ok(Self::from_samples(name, samples, warnings))
@@ -428,6 +437,29 @@ mod tests {
     }
 
     #[test]
+    fn velocities_that_go_elsewhere_are_refused() {
+        let x = points(&[[0.0, 0.0], [0.5, 0.0], [1.0, 0.0]]);
+        let with = |v: f64| {
+            let v = points(&[[v, 0.1], [v, 0.1], [v, 0.1]]);
+            Demonstration::new("a", vec![0.0, 0.5, 1.0], x.clone(), Some(v))
+        };
+        assert!(message(with(0.0)).contains("do not go where"));
+        assert!(message(with(-1.0)).contains("do not go where"));
+        assert!(with(0.1).is_ok());
+    }
+
+    #[test]
+    fn few_samples_are_told_of() {
+        let few = |n: u32| {
+            let t: Vec<f64> = (0..n).map(f64::from).collect();
+            let x = t.iter().map(|t| DVector::from_row_slice(&[*t, 0.0])).collect();
+            let all = Demonstration::new("a", t, x, None).expect("valid").warnings;
+            all.iter().any(|w| matches!(w, Warning::Few { .. }))
+        };
+        assert!(few(2) && few(19) && !few(20));
+    }
+
+    #[test]
     fn all_end_at_the_attractor() {
         let make =
             |end: f64| Demonstration::new("a", vec![0.0, 1.0], points(&[[1.0, 1.0], [end, 0.0]]), None).expect("valid");
@@ -447,7 +479,8 @@ mod tests {
         };
         let said = |items| -> Vec<String> {
             let all: Demonstrations = Demonstrations::new(items).expect("one skill");
-            all.warnings().iter().map(ToString::to_string).collect()
+            let again = all.warnings().iter().filter(|w| matches!(w, Warning::Again { .. }));
+            again.map(ToString::to_string).collect()
         };
         assert!(said(vec![make("a", 1.0), make("b", 1.1)]).is_empty());
         let twice = said(vec![make("a", 1.0), make("b", 1.1), make("a", 1.0), make("c", 1.1)]);

@@ -32,6 +32,15 @@ pub enum Warning {
         /// How many samples there are in all.
         samples: usize,
     },
+    /// So few samples that most of the motion is between them.
+    Few {
+        /// Where it comes from: file and number.
+        demonstration: String,
+        /// How many there are.
+        samples: usize,
+        /// As many are asked for.
+        wanted: usize,
+    },
     /// The position is held over several samples: the sensor is slower than the recorder.
     Held {
         /// Where it comes from: file and number.
@@ -128,6 +137,11 @@ impl fmt::Display for Warning {
             Warning::Repeated { demonstration, count, samples } => {
                 write!(f, "{demonstration}: {count} of {samples} samples repeat the one before them; they are left out")
             }
+            Warning::Few { demonstration, samples, wanted } => write!(
+                f,
+                "{demonstration}: it has {}; with less than {wanted} the way between them is a guess",
+                crate::error::counted(*samples, "sample")
+            ),
             Warning::Held { demonstration, kept, samples } => write!(
                 f,
                 "{demonstration}: the position changes only {kept} times in {samples} samples; those between are left out"

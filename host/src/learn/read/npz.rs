@@ -278,10 +278,10 @@ mod tests {
 
     #[test]
     fn velocities_are_taken_and_others_are_named() {
-        let v = [1.0; 6];
+        let v = [-1.0; 6];
         let all = read_arrays(&[("x", &[3, 2], &X), ("t", &[3], &T), ("x_dot", &[3, 2], &v), ("force", &[1], &[0.0])]);
         let all = all.expect("valid");
-        assert_eq!(all[0].v[2].as_slice(), [1.0, 1.0]);
+        assert_eq!(all[0].v[2].as_slice(), [-1.0, -1.0]);
         assert!(
             all[0].warnings.iter().any(|w| w.to_string().contains("a.npz: force not used")),
             "{:?}",
