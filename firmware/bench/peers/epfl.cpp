@@ -1,12 +1,15 @@
 // How long one modulated velocity takes EPFL's C++ library, measured as `benches/percentiles.rs` measures ours.
 //
-// Library: https://github.com/epfl-lasa/dynamic_obstacle_avoidance_cpp (measured at commit 19e7c04). It draws, and its headers
-// include matplotlibcpp and with it Python's; nothing that is timed does. From this folder, with Eigen as <eigen3/...>:
+// Library: https://github.com/epfl-lasa/dynamic_obstacle_avoidance_cpp (measured at commit 19e7c04, with two Eigens: libigl/eigen 1f05f51 of
+// 2017 and the slower 3.3.90 of 2019, eigen-git-mirror 36b9596). From this folder, with Eigen as <eigen3/...>:
 //
 //   git clone https://github.com/epfl-lasa/dynamic_obstacle_avoidance_cpp peer
-//   g++ -O3 -march=native -DNDEBUG -std=c++17 -I peer/include $(python3-config --includes --embed) epfl.cpp \
+//   g++ -O3 -march=native -DNDEBUG -std=c++17 -I peer/include epfl.cpp \
 //     peer/src/{Modulation,Agent,Environment}.cpp peer/src/Obstacle/*.cpp peer/src/State/*.cpp peer/src/Utils/MathTools.cpp \
-//     peer/src/Utils/ObstacleGeneration/Aggregation.cpp $(python3-config --ldflags --embed) -o epfl && ./epfl
+//     peer/src/Utils/ObstacleGeneration/Aggregation.cpp -o epfl && ./epfl
+//
+// Its obstacles can draw themselves, by matplotlibcpp and so Python, which has to be found as well. Where it was measured there is no Python to
+// link: Utils/Plotting/matplotlibcpp.hpp was replaced by one whose `plot` and `text` do nothing. Nothing that is timed draws.
 //
 // The library counts in three dimensions: the ellipsoids are long across the plane in which everything else happens.
 

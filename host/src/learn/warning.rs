@@ -1,5 +1,6 @@
 //! What a person should know about demonstrations that can be learnt from all the same.
 
+use crate::error::counted;
 use std::fmt;
 
 /// Something that may not be what was meant. Learning goes on.
@@ -139,8 +140,8 @@ impl fmt::Display for Warning {
             }
             Warning::Few { demonstration, samples, wanted } => write!(
                 f,
-                "{demonstration}: it has {}; with less than {wanted} the way between them is a guess",
-                crate::error::counted(*samples, "sample")
+                "{demonstration}: it has {}; with fewer than {wanted} the way between them is a guess",
+                counted(*samples, "sample")
             ),
             Warning::Held { demonstration, kept, samples } => write!(
                 f,

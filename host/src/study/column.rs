@@ -6,8 +6,8 @@ use std::fmt;
 /// both of its figures for speed come out. (The tool's own default is 0.03, for a gentler push.)
 pub const GAIN: f64 = 0.05;
 
-/// theta_2 where the paper is followed to the letter, rad (40 degrees). It gives none: of all multiples of ten degrees this one and 50 come nearest to
-/// both of its figures for speed (50 a little nearer). See [`super::placements`] for what others do.
+/// theta_2 where the paper is followed to the letter, rad (40 degrees). It gives none: of both of its figures for speed 50 and 60 degrees give the
+/// first a little nearer, and none the sign of the second. See [`super::placements`] for what others do.
 pub const THETA: f64 = 2.0 * std::f64::consts::PI / 9.0;
 
 /// A way to compute the velocity.

@@ -22,8 +22,8 @@ pub struct Verdict {
     pub measured: String,
     /// Does it hold? None where nothing was measured that could say.
     pub holds: Option<bool>,
-    /// Is it about keeping out of cores, the same bits, or arriving in what the paper shows? A study fails where one of these does not hold; another that does not is what
-    /// it found.
+    /// Is it about keeping out of cores, the same bits, or arriving in what the paper shows? A study fails where one of these does not
+    /// hold; another that does not is what it found.
     pub vital: bool,
 }
 

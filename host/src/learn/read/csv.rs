@@ -156,6 +156,7 @@ mod tests {
         assert!(refused("\n\n").contains("line 1: the file is empty"));
         assert!(refused("t,x,y\n").contains("a.csv: it is empty"));
         assert!(refused("t,x,y\n0,1,2\n").contains("one sample"));
+        assert!(refused("t,x,y\n2,1,2\n1,2,2\n0,3,2\n").contains("line 3: time goes back from 2 to 1"));
         assert!(refused("t,x,y\n0,1,2\n1,one,2\n").contains("line 3: column x: `one` is not a number"));
         assert!(refused("t,x,y\n0,1,2\n1,NaN,2\n").contains("line 3: column x is NaN"));
         assert!(refused("t,x,y\n0,1,2\n1,2\n").contains("line 3: it has 2 fields and the header 3"));

@@ -49,6 +49,10 @@ impl Splitter {
             (None, None) => false,
         };
         if begins {
+            // One sample is no recording: time runs backwards.
+            if let (None, [from]) = (label, self.current.t.as_slice()) {
+                return Err(Fault::Back { from: *from, to: t });
+            }
             self.label = label.map(str::to_owned);
             if !self.current.t.is_empty() {
                 self.done.push(std::mem::take(&mut self.current));
