@@ -80,13 +80,6 @@ fn verdict(learnt: &Learnt) -> Vec<String> {
         }
         _ => format!("it strays from the demonstrations by {}", percent(q.path_error)),
     }];
-    if q.converged < q.rollouts {
-        let stranded = q.rollouts - q.converged;
-        says.push(format!(
-            "{stranded} of {} rollouts take longer than ten times their demonstration: raise --sigma",
-            q.rollouts
-        ));
-    }
     if q.robust < q.beside {
         says.push(format!(
             "from {} of {} places beside the demonstrations it takes more than twice their time: demonstrate from there as well, \
@@ -115,6 +108,25 @@ fn verdict(learnt: &Learnt) -> Vec<String> {
         ));
     }
     says
+}
+
+/// A skill that does not come to its end from where it was shown is none: nothing is written.
+fn arrives(learnt: &Learnt, options: &Options) -> Result<(), Error> {
+    let stranded = learnt.stranded();
+    let Some(first) = stranded.first() else { return Ok(()) };
+    let others = match stranded.len() - 1 {
+        0 => String::new(),
+        n => format!(", and neither from {}", counted(n, "other")),
+    };
+    // A little above, for the start of a recording is left out.
+    let rate = (110.0 * learnt.arriving_rate()).ceil() / 100.0;
+    Err(Error::failed(format!(
+        "nothing is written: from the start of {first} the learnt motion is not at its goal after ten times the demonstration's time{others}"
+    ))
+    .with_help(format!(
+        "with --sigma {rate} (now {}) the certificate itself promises that it is; better still, demonstrate a more direct way, in more samples",
+        options.sigma
+    )))
 }
 
 /// The skill beside its demonstrations.
@@ -164,6 +176,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     let mut learnt = learn_from(demonstrations, &options, &|done| bar.set_position((done * 1000.0) as u64))?;
     let seconds = begin.elapsed().as_secs_f64();
     bar.finish_and_clear();
+    arrives(&learnt, &options)?;
     // Where the old demonstrations are gone, the new files alone are not what it was learnt from.
     let sources = if complete { &sources[..] } else { &[] };
     memory::note(&mut learnt.model, &out, sources, &learnt.demonstrations.starts());

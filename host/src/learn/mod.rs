@@ -6,6 +6,7 @@
 //! same numbers, with its certificate checked on them.
 
 mod beside;
+mod between;
 mod candidate;
 mod cleaning;
 mod cone;
@@ -90,6 +91,32 @@ pub struct Learnt {
     pub demonstrations: Demonstrations,
 }
 
+impl Learnt {
+    /// The demonstrations from whose starts the motion does not arrive in ten times their duration, by name. The certificate says that it arrives
+    /// some day; nobody waits for that.
+    pub fn stranded(&self) -> Vec<&str> {
+        match self.model.dimension {
+            2 => self.stranded_in::<2>(),
+            _ => self.stranded_in::<3>(),
+        }
+    }
+
+    /// The rate sigma, 1/s, at which no demonstration's start can be stranded: the certificate of that rate keeps |x - x*| below
+    /// sqrt(cond P) e^(-sigma t) of what it was, and cond P is bounded.
+    pub fn arriving_rate(&self) -> f64 {
+        let shortest = self.demonstrations.items().iter().map(Demonstration::duration).fold(f64::INFINITY, f64::min);
+        (fit::MAX_CONDITION.sqrt() / quality::NEAR).ln() / (quality::LIMIT * shortest)
+    }
+
+    fn stranded_in<const D: usize>(&self) -> Vec<&str> {
+        let Some(motion) = motion_of::<D>(&self.model) else { return vec![] };
+        let (items, extent) = (self.demonstrations.items(), self.demonstrations.extent());
+        let paths = recordings::<D>(&self.demonstrations);
+        let lost = items.iter().zip(&paths).filter(|(_, path)| !quality::rollout(&motion, path, extent).1);
+        lost.map(|(item, _)| item.name.as_str()).collect()
+    }
+}
+
 /// Learns a skill from files and folders. `progress` is told the part that is done, 0 to 1.
 pub fn learn(paths: &[PathBuf], options: &Options, progress: &dyn Fn(f64)) -> Result<Learnt, LearnError> {
     learn_from(read(paths, options.unit)?, options, progress)
@@ -158,10 +185,10 @@ const FOLLOW: f64 = 2.0;
 /// What a component has to gain: a device evaluates every one in every tick.
 const PRICE: f64 = 0.01;
 
-/// Components that this many demonstrations can speak for: a stroke has about twenty numbers to give, a component takes ten.
+/// Components that this many demonstrations can speak for: a stroke has about twenty numbers to give, a component takes ten; and no more than
+/// there are samples.
 fn most_components(demonstrations: &Demonstrations) -> usize {
-    let samples = demonstrations.samples() / (2 * (demonstrations.dimension() + 1));
-    (2 + 2 * demonstrations.items().len()).min(samples).clamp(1, MAX_COMPONENTS)
+    (2 + 2 * demonstrations.items().len()).min(demonstrations.samples()).clamp(1, MAX_COMPONENTS)
 }
 
 fn learn_in<const D: usize>(
@@ -265,7 +292,7 @@ fn tracks<const D: usize>(
             let x = r.x.iter().map(|x| (x - scale.attractor) / scale.length).step_by(stride).collect();
             let v = r.v.iter().map(|v| v / scale.speed).step_by(stride).collect();
             let t = r.t.iter().map(|t| (t - r.t[0]) * scale.speed / scale.length).step_by(stride).collect();
-            reference::Track { x, v, t, shift: shift / scale.length }
+            between::filled(&reference::Track { x, v, t, shift: shift / scale.length })
         })
         .collect()
 }

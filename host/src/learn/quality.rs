@@ -9,7 +9,9 @@ const POINTS: usize = 200;
 /// Points that the alignment may run ahead or behind.
 const WINDOW: usize = 20;
 /// A rollout has arrived within this part of the extent.
-const NEAR: f64 = 0.01;
+pub const NEAR: f64 = 0.01;
+/// In this many times the demonstration's time, which is long enough for what is slow.
+pub const LIMIT: f64 = 10.0;
 /// From beside the demonstrations this is near enough, in this many times their duration: the last of the way may be slow.
 const THERE: f64 = 0.05;
 const PATIENCE: f64 = 2.0;
@@ -75,15 +77,15 @@ impl<const D: usize> Recording<D> {
     }
 }
 
-/// What a demonstration is compared with: the path from where it starts, until it arrives or ten times the demonstration's time have
-/// passed, which is long enough for what is slow; and whether it arrived.
+/// What a demonstration is compared with: the path from where it starts, until it arrives or [`LIMIT`] times the demonstration's time have
+/// passed; and whether it arrived.
 pub fn rollout<const D: usize>(
     motion: &Motion<D>,
     recording: &Recording<D>,
     extent: f64,
 ) -> (Vec<SVector<f64, D>>, bool) {
     let start = &recording.x[recording.start()];
-    motion.rollout(start, recording.step(), 10.0 * recording.duration(), NEAR * extent)
+    motion.rollout(start, recording.step(), LIMIT * recording.duration(), NEAR * extent)
 }
 
 /// Compares a motion with demonstrations.

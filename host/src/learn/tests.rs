@@ -135,13 +135,45 @@ fn the_same_seed_gives_the_same_file() {
     assert_eq!(once, learnt(helix(), &options).model.to_toml().expect("writes"));
 }
 
+/// A wave and an arc, at even pace and from rest to rest, in so few samples that most of the way is between them: what is learnt goes through
+/// them, keeps the time, and arrives, also from beside them.
 #[test]
-fn two_samples_are_enough() {
-    let x = vec![DVector::from_vec(vec![0.3, 0.1]), DVector::from_vec(vec![0.0, 0.0])];
-    let one = Demonstration::new("short", vec![0.0, 1.0], x, None).expect("valid");
-    let found = learn_from(Demonstrations::new(vec![one]).expect("one"), &Options::default(), &|_| ());
-    let model = found.expect("learnable").model;
-    assert!(model.certified::<f32>());
+fn a_few_samples_are_enough() {
+    let paths: [fn(f64) -> [f64; 2]; 2] = [
+        |s| [0.5 * (1.0 - s), 0.1 * (std::f64::consts::TAU * s).sin()],
+        |s| [0.3 * (std::f64::consts::FRAC_PI_2 * s).cos(), 0.3 * (1.0 - (std::f64::consts::FRAC_PI_2 * s).sin())],
+    ];
+    let paces: [fn(f64) -> f64; 2] = [|u| u, |u| u - (std::f64::consts::TAU * u).sin() / std::f64::consts::TAU];
+    for count in [2, 3, 5, 8, 12, 20] {
+        for (path, pace) in paths.iter().flat_map(|path| paces.map(|pace| (path, pace))) {
+            let t: Vec<f64> = (0..count).map(|i| 2.0 * f64::from(i) / f64::from(count - 1)).collect();
+            let x = t.iter().map(|t| DVector::from_row_slice(&path(pace(t / 2.0)))).collect();
+            let one = Demonstration::new("few", t, x, None).expect("valid");
+            let found = learnt(Demonstrations::new(vec![one]).expect("one"), &Options::default());
+            let (q, extent) = (&found.quality, found.demonstrations.extent());
+            assert!(found.model.certified::<f32>() && found.stranded().is_empty(), "{count}: {q:?}");
+            assert!(q.converged == 1 && q.robust + 2 > q.beside, "{count}: {q:?}");
+            assert!(q.path_error < 0.03 * extent && (0.7..1.2).contains(&q.pace), "{count}: {q:?}");
+        }
+    }
+}
+
+/// One linear system cannot follow a knot, and at a slow rate it is not at its goal in ten times the demonstration's time; with the rate at which
+/// the certificate promises it, it is.
+#[test]
+fn a_motion_that_does_not_arrive_is_named_and_so_is_the_rate_at_which_it_does() {
+    let n = 60;
+    let t: Vec<f64> = (0..=n).map(|i| 0.05 * f64::from(i)).collect();
+    let at = |s: f64| DVector::from_row_slice(&[0.3 * (19.0 * s).cos(), 0.3 * (37.0 * s).sin()]);
+    let x = (0..=n).map(|i| at(f64::from(i) / f64::from(n))).collect();
+    let one = Demonstration::new("knot", t, x, None).expect("valid");
+    let all = Demonstrations::new(vec![one]).expect("one");
+    let options = Options { components: Some(1), ..Options::default() };
+    let found = learnt(all.clone(), &options);
+    assert_eq!((found.stranded(), found.quality.converged), (vec!["knot"], 0));
+    let sigma = found.arriving_rate();
+    let found = learnt(all, &Options { sigma, ..options });
+    assert_eq!((found.stranded().len(), found.quality.converged), (0, 1));
 }
 
 /// The numbers in the file, rounded to each scalar a device may run, keep the certificate: of a skill in the plane and of one in space.

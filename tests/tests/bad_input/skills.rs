@@ -148,6 +148,32 @@ fn what_a_person_may_have_meant_is_a_warning() {
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
 }
 
+/// A knot that one linear system cannot follow: what was there before stays as it was.
+#[test]
+fn a_skill_that_does_not_arrive_is_not_written() {
+    let folder = Folder::new("stranded");
+    let knot = |i: usize| {
+        let s = i as f64 / 60.0;
+        format!("{},{},{}\n", 3.0 * s, 0.3 * (19.0 * s).cos(), 0.3 * (37.0 * s).sin())
+    };
+    folder.write("knot.csv", (0..=60).map(knot).fold("t,x,y\n".to_owned(), |text, row| text + &row));
+    folder.write("m.toml", "as it was");
+    let learn = ["learn", "knot.csv", "-o", "m.toml", "--components", "1", "--json"];
+    let ended = folder.run(&learn);
+    let error = &ended.json()["error"];
+    assert_eq!((ended.code, &error["exit"]), (Some(1), &1.into()), "{}{}", ended.stdout, ended.stderr);
+    let said = error["message"].as_str().unwrap();
+    assert!(said.starts_with("nothing is written: from the start of knot.csv"), "{said}");
+    assert_eq!(std::fs::read_to_string(folder.0.join("m.toml")).unwrap(), "as it was");
+    assert!(!folder.0.join("m.svg").exists());
+    // What it says helps.
+    let help = error["help"].as_str().unwrap();
+    let sigma = help.split_whitespace().skip_while(|w| *w != "--sigma").nth(1).unwrap();
+    let ended = folder.run(&[&learn[..], &["--sigma", sigma]].concat());
+    assert_eq!((ended.code, &ended.json()["converged"]), (Some(0), &1.into()), "{}", ended.stderr);
+    assert_eq!(folder.run(&["check", "m.toml"]).code, Some(0));
+}
+
 #[test]
 fn a_million_samples_are_learnt_from() {
     let folder = Folder::new("million");
