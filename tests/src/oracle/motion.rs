@@ -54,13 +54,20 @@ fn nominal(motion: &OracleMotion, x: &DVector<f64>) -> Result<(DVector<f64>, Vec
     }
 }
 
-/// gamma_k = 1 / sum_j exp(l_j - l_k): every weight by its own ratios, so no common factor can be 0 or infinite.
+/// A component whose logarithm is farther than this below the largest counts nothing.
+const NOTHING: f64 = 40.0;
+
+/// gamma_k = 1 / sum_j exp(l_j - l_k): every weight by its own ratios, so no common factor can be 0 or infinite. Over those that count; on which side
+/// of the edge rounding puts one moves f by no more than exp(-40) = 4e-18 of what the component alone would have.
 fn mixture(components: &[OracleComponent], x: &DVector<f64>) -> Result<Vec<f64>, OracleError> {
     if components.is_empty() {
         return Err(OracleError::Value("components"));
     }
     let logs = components.iter().map(|component| log_density(component, x)).collect::<Result<Vec<f64>, _>>()?;
-    Ok(logs.iter().map(|own| 1.0 / logs.iter().map(|other| (other - own).exp()).sum::<f64>()).collect())
+    let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let counts = |log: &f64| largest - log <= NOTHING;
+    let weight = |own: &f64| 1.0 / logs.iter().filter(|log| counts(log)).map(|other| (other - own).exp()).sum::<f64>();
+    Ok(logs.iter().map(|own| if counts(own) { weight(own) } else { 0.0 }).collect())
 }
 
 fn log_density(component: &OracleComponent, x: &DVector<f64>) -> Result<f64, OracleError> {
@@ -135,6 +142,17 @@ mod tests {
         }
         // The widest one wins far away.
         assert!((at(&motion, [30.0, -20.0]).1[2] - 1.0).abs() < 1e-15);
+    }
+
+    /// Two components of variance 1, at 0 and at (9, 0): at (a, 0) their logarithms are 81/2 - 9a apart.
+    #[test]
+    fn forty_below_the_largest_nothing_counts() {
+        let motion = lpv(vec![component(0.5, [0.0, 0.0], 1.0, 1.0), component(0.5, [9.0, 0.0], 1.0, 1e18)]);
+        let (f, weights) = at(&motion, [0.05, 0.0]);
+        assert_eq!((weights.as_slice(), f.as_slice()), (&[1.0, 0.0][..], &[-0.05, 0.0][..]));
+        let (f, weights) = at(&motion, [0.06, 0.0]);
+        let tiny = (-40.5_f64 + 0.54).exp();
+        assert!((weights[1] / tiny - 1.0).abs() < 1e-12 && (f[0] / (-0.06 * (1.0 + 1e18 * tiny)) - 1.0).abs() < 1e-12);
     }
 
     #[test]
