@@ -143,6 +143,10 @@ fn what_is_no_folder_of_motions_is_bad_input() {
         assert!(ended.stdout.is_empty() && words.iter().all(|w| flat.contains(w)), "{arguments:?}: {flat}");
         let ended = folder.study(&[arguments, &["--json"]].concat());
         assert_eq!((ended.code, &ended.json()["error"]["exit"]), (Some(2), &2.into()), "{arguments:?}");
+        // Nothing to read, so no folder to look into; one that was there stays.
+        assert!(!folder.0.join("out").exists() && folder.0.join("empty").exists(), "{arguments:?}");
+        assert_eq!(folder.study(&[arguments, &["-o", "empty"]].concat()).code, Some(2));
+        assert!(folder.0.join("empty").exists(), "{arguments:?}");
     }
 }
 

@@ -169,6 +169,9 @@ fn a_folder_without_the_motions_is_bad_input_that_names_the_file() {
     let ended = programs::run(&folder, ["study", "time", "--data", ".", "--json"]).unwrap();
     assert_eq!(ended.code, Some(2));
     assert!(ended.json()["error"]["message"].as_str().unwrap().contains(".mat"), "{}", ended.stdout);
+    let help = ended.json()["error"]["help"].as_str().unwrap().to_owned();
+    assert!(["Sshape.mat", "Angle.mat", "Leaf_1.mat"].iter().all(|file| help.contains(file)), "{help}");
+    assert!(!folder.join("out").exists(), "nothing was found, so there is nothing to look at");
     fs::remove_dir_all(folder).unwrap();
 }
 

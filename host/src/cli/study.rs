@@ -111,6 +111,9 @@ impl OfPaper {
     }
 }
 
+const WANTED: &str = "--data DIR is a folder with Sshape.mat, Angle.mat and Leaf_1.mat of the LASA handwriting set; without it the project's own \
+                      motions stand in";
+
 /// Where the bar is.
 struct Stage<'a> {
     bar: &'a ProgressBar,
@@ -135,10 +138,14 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
 
 fn of_paper(study: &OfPaper, json: bool) -> Finished {
     let common = study.common();
-    findings::prepare(&common.out)?;
+    let _folder = findings::prepare(&common.out)?;
     let bar = progress::bar(json);
     let stage = Stage { bar: &bar };
-    let skills = stage.run("motions", |done| Skills::new(common.data.as_deref(), done))?;
+    let skills =
+        stage.run("motions", |done| Skills::new(common.data.as_deref(), done)).map_err(|e| match common.data {
+            Some(_) => e.with_help(WANTED),
+            None => e,
+        })?;
     let seed = common.seed;
     let trajectories = || stage.run("trajectories", |done| trajectories::study(&skills, seed, done));
     let time = || stage.run("times", |done| crate::study::time(&skills, done));

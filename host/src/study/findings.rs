@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
 
@@ -141,15 +141,34 @@ fn decides(vital: bool) -> String {
     if vital { "yes" } else { "no" }.into()
 }
 
+/// A folder to write into. Those that were made for it are gone again where nothing came into them.
+#[derive(Debug)]
+#[must_use = "dropped, it takes the empty folder away"]
+pub struct Prepared {
+    made: Vec<PathBuf>,
+}
+
+impl Drop for Prepared {
+    fn drop(&mut self) {
+        // Only what is empty can be removed so.
+        for folder in &self.made {
+            let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
 /// Makes the folder, and sees that a file can be written into it, before anything is computed for it.
 ///
 /// # Errors
 /// It cannot.
-pub fn prepare(folder: &Path) -> Result<(), Error> {
+pub fn prepare(folder: &Path) -> Result<Prepared, Error> {
     let failed = |e: std::io::Error| Error::bad_input(format!("{}: cannot be written to: {e}", folder.display()));
+    let missing = folder.ancestors().take_while(|f| !f.as_os_str().is_empty() && !f.exists());
+    let prepared = Prepared { made: missing.map(Path::to_path_buf).collect() };
     fs::create_dir_all(folder).map_err(failed)?;
     let probe = folder.join(".pliant-can-write");
-    fs::write(&probe, "").and_then(|()| fs::remove_file(&probe)).map_err(failed)
+    fs::write(&probe, "").and_then(|()| fs::remove_file(&probe)).map_err(failed)?;
+    Ok(prepared)
 }
 
 fn put(path: &Path, text: &str) -> Result<(), Error> {
