@@ -1,4 +1,4 @@
-//! What the fuzz targets share. Run one with `cargo +nightly fuzz run to_device` in the `protocol` folder.
+//! What the fuzz targets share. `cargo xtask fuzz` runs them.
 
 use pliant_protocol::{FRAME_MAX, Frame, VERSION, checksum, decode, encode};
 use serde::{Serialize, de::DeserializeOwned};
