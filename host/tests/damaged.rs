@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Damaged files of each kind; a build without optimisation reads some hundreds a second.
-const COUNT: usize = 4000;
+/// Damaged files of each kind.
+const COUNT: usize = 10_000;
 /// No file of some kilobytes takes this long, on a machine with much else to do.
 const LONG: Duration = Duration::from_secs(20);
 /// Nor this much memory, kB: an archive may unpack to 256 MiB.
