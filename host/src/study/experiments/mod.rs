@@ -101,7 +101,7 @@ pub fn study(
             "Speeds where the paper compares them, from when the robot comes there".into(),
             figures::velocities(&all),
         ),
-        ("experiment-c", caption("C1", "five obstacles"), figures::complex(&all)?),
+        ("experiment-c", caption("C1", "five obstacles"), figures::complex(&all, &skills.recordings)?),
         (
             "speed-spread",
             "The two claims for obstacles at other places on the path".into(),
