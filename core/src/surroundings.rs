@@ -1,7 +1,7 @@
 //! All obstacles as they look from one point.
 
 use crate::obstacle::SoftLayer;
-use crate::{Scalar, Vector};
+use crate::{Obstacle, Scalar, Vector};
 
 /// What one look at the table finds.
 #[derive(Debug)]
@@ -33,6 +33,34 @@ impl<S: Scalar, const D: usize, const CAP: usize> Surroundings<S, D, CAP> {
             nearest: None,
             velocity: *f,
             unusable: false,
+        }
+    }
+
+    /// Lists an obstacle that has this Gamma, by its place in the table, if its surface may come within `reach`, m.
+    #[inline(always)]
+    pub fn note_near(&mut self, obstacle: &Obstacle<S, D>, gamma: S, index: usize, reach: S) {
+        if obstacle.is_near(gamma, reach) {
+            // Cannot be full: it has the table's own capacity.
+            let _ = self.near.push((index, reach));
+        }
+    }
+
+    /// Lists the obstacle's soft `layer`, if x is in it and layers count.
+    #[inline(always)]
+    pub fn note_soft(
+        &mut self,
+        obstacle: &Obstacle<S, D>,
+        gamma: S,
+        deformable: bool,
+        layer: impl FnOnce(&Obstacle<S, D>) -> Option<SoftLayer<S, D>>,
+    ) {
+        // The usual answer first.
+        if obstacle.may_be_soft(gamma)
+            && deformable
+            && let Some(layer) = layer(obstacle)
+        {
+            // Nor can this.
+            let _ = self.soft.push(layer);
         }
     }
 }

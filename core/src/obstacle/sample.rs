@@ -39,6 +39,14 @@ const FADING: f64 = 10.0;
 /// That axis in the obstacle's frame: one along which robots seldom approach.
 const LEANING: [f64; 3] = [1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0];
 
+impl<S: Scalar, const D: usize> Sample<S, D> {
+    /// How far the surface may come in a step of `dt`, s, and as much again for the curve of its way, m.
+    #[inline(always)]
+    pub fn comes(&self, dt: S) -> S {
+        self.surface_velocity.iter().fold(S::zero(), |sum, s| sum + s.abs()) * (dt + dt)
+    }
+}
+
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// How it looks from x.
     #[inline(always)]

@@ -239,17 +239,10 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 left = others.iter();
                 modulation.push_abreast(&abreast);
                 for (entry, one) in few.iter().zip(abreast.gamma.numbers()) {
-                    if let Some((reach, _)) = reach
-                        && entry.obstacle.is_near(one, reach)
-                    {
-                        let _ = around.near.push((index, reach));
+                    if let Some((reach, _)) = reach {
+                        around.note_near(&entry.obstacle, one, index, reach);
                     }
-                    if entry.obstacle.may_be_soft(one)
-                        && deformable
-                        && let Some(layer) = entry.obstacle.soft_layer_at(x)
-                    {
-                        let _ = around.soft.push(layer);
-                    }
+                    around.note_soft(&entry.obstacle, one, deformable, |o| o.soft_layer_at(x));
                     (gamma, nearest) = nearer((one, Some(entry)), (gamma, nearest));
                     index += 1;
                 }
@@ -257,15 +250,9 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             }
             let Some(entry) = left.next() else { break };
             let sample = entry.obstacle.sample(x);
-            if let Some((mut reach, dt)) = reach {
-                if entry.obstacle.moves() {
-                    // How far its surface may come in a step, and as much again for the curve of its way.
-                    let fastest = sample.surface_velocity.iter().fold(S::zero(), |sum, s| sum + s.abs());
-                    reach += fastest * (dt + dt);
-                }
-                if entry.obstacle.is_near(sample.gamma, reach) {
-                    let _ = around.near.push((index, reach));
-                }
+            if let Some((reach, dt)) = reach {
+                let reach = if entry.obstacle.moves() { reach + sample.comes(dt) } else { reach };
+                around.note_near(&entry.obstacle, sample.gamma, index, reach);
             }
             index += 1;
             if !(sample.gamma < S::FAR) {
@@ -273,14 +260,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             }
             // First, so that what follows need not keep the sample at hand.
             modulation.push(&sample);
-            // The usual answer first.
-            if entry.obstacle.may_be_soft(sample.gamma)
-                && deformable
-                && let Some(layer) = entry.obstacle.soft_layer(x, sample.clone())
-            {
-                // Cannot be full: it has the table's own capacity.
-                let _ = around.soft.push(layer);
-            }
+            around.note_soft(&entry.obstacle, sample.gamma, deformable, |o| o.soft_layer(x, sample.clone()));
             (gamma, nearest) = nearer((sample.gamma, Some(entry)), (gamma, nearest));
         }
         let (of_obstacles, mut points) = (gamma, None);
