@@ -185,6 +185,10 @@ fn the_paper_on_our_own_motions_twice_the_same() {
     assert_eq!(found[0], found[1], "the same seed, the same findings");
     assert_eq!(found[0]["data"], "own");
     check_paper(&found[0], &folder.join("one"), 60);
+    // The exit code was 0, though a claim fails that is not vital: at one place of our own the sign is another one.
+    let fails = |v: &&Value| v["holds"] == false;
+    let failed: Vec<&Value> = found[0]["verdicts"].as_array().unwrap().iter().filter(fails).collect();
+    assert!(!failed.is_empty() && failed.iter().all(|v| v["vital"] == false), "{failed:?}");
     let files = |to: &str| fs::read(folder.join(to).join("experiments-b.svg")).unwrap();
     assert_eq!(files("one"), files("two"));
     fs::remove_dir_all(folder).unwrap();
@@ -239,7 +243,7 @@ fn the_paper_on_lasa_handwriting() {
 }
 
 #[test]
-fn a_vital_claim_that_fails_is_exit_code_1_and_another_is_not() {
+fn a_vital_claim_that_fails_is_exit_code_1() {
     let folder = folder("fails");
     let run = |slower: f64, json: bool| {
         as_lasa(&folder, slower);
@@ -258,9 +262,9 @@ fn a_vital_claim_that_fails_is_exit_code_1_and_another_is_not() {
         (&false.into(), &true.into()),
         "{found}"
     );
-    let rows = found["trajectories"].as_array().unwrap();
-    let missed = |r: &&Value| number(&r["reached"]) < number(&r["starts"]);
-    assert!(rows.iter().filter(missed).all(|r| r["skill"] == "S-shape") && rows.iter().any(|r| missed(&r)), "{rows:?}");
+    let rows = found["trajectories"].as_array().unwrap().iter().filter(|r| r["column"] == "pliant");
+    let missed: Vec<&Value> = rows.filter(|r| number(&r["reached"]) < number(&r["starts"])).collect();
+    assert!(!missed.is_empty() && missed.iter().all(|r| r["skill"] == "S-shape"), "{missed:?}");
     let claims = fs::read_to_string(folder.join("out/claims.csv")).unwrap();
     assert!(claims.lines().nth(1).unwrap().ends_with(",NO,yes"), "{claims}");
     let said = run(60.0, false);
