@@ -14,7 +14,8 @@ use crate::error::Outcome;
 use crate::study::skill::Skills;
 use crate::study::{Findings, column, experiments, findings, placements, trajectories};
 
-/// Options of `pliant study`.
+/// Options of `pliant study`. All parts compute in this process; only `paper` and `experiments` take `--device`, for three experiments more on a
+/// device.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Args {
     #[command(subcommand)]
@@ -31,7 +32,7 @@ enum Study {
 
 #[derive(Clone, Debug, Subcommand)]
 enum OfPaper {
-    /// Everything the paper shows, and what it does not: all of the others.
+    /// Everything the paper shows, and what it does not: all of the others (takes --device and --placements).
     Paper {
         #[command(flatten)]
         common: Common,
@@ -40,24 +41,24 @@ enum OfPaper {
         #[command(flatten)]
         places: Places,
     },
-    /// Motions past one and two deformable obstacles, from many places (Fig. 3).
+    /// Motions past one and two deformable obstacles, from many places (Fig. 3); here alone, without --device.
     Trajectories {
         #[command(flatten)]
         common: Common,
     },
-    /// Time against stiffness, and time saved against the original method (Fig. 4).
+    /// Time against stiffness, and time saved against the original method (Fig. 4); here alone, without --device.
     Time {
         #[command(flatten)]
         common: Common,
     },
-    /// The experiments A1 to D1, and the claims about speed (section V).
+    /// The experiments A1 to D1, and the claims about speed (section V); takes --device.
     Experiments {
         #[command(flatten)]
         common: Common,
         #[command(flatten)]
         device: OnDevice,
     },
-    /// Random obstacles on both sides of the path: what the method does where the paper did not look.
+    /// Random obstacles on both sides of the path: what the method does where the paper did not look; here alone, without --device.
     Placements {
         #[command(flatten)]
         common: Common,
@@ -138,7 +139,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
 
 fn of_paper(study: &OfPaper, json: bool) -> Finished {
     let common = study.common();
-    let _folder = findings::prepare(&common.out)?;
+    findings::check_writable(&common.out)?;
     let bar = progress::bar(json);
     let stage = Stage { bar: &bar };
     let skills =

@@ -5,7 +5,7 @@ use nalgebra::{Point2, Vector2};
 use super::Figure;
 use super::figure::{Anchor, Axes, Extent, FONT_SIZE, Pixel, Svg, text_width};
 use super::ink::thinned;
-use super::style::{ATTRACTOR, CORE, SHELL};
+use super::style::{ATTRACTOR, CORE, SHELL, START};
 
 /// A colour of a series; they differ in lightness too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,7 +80,9 @@ pub enum Place {
     Core(Vec<(f64, f64)>),
     /// A soft layer's.
     Shell(Vec<(f64, f64)>),
-    /// Where a motion ends.
+    /// Where a motion starts.
+    Start((f64, f64)),
+    /// Where it ends.
     Goal((f64, f64)),
 }
 
@@ -183,7 +185,7 @@ impl Chart {
         });
         let outlines = self.places.iter().flat_map(|p| match p {
             Place::Core(ring) | Place::Shell(ring) => ring.clone(),
-            Place::Goal(at) => vec![*at],
+            Place::Start(at) | Place::Goal(at) => vec![*at],
         });
         let corners = self.cells.iter().flat_map(|c| {
             let half = c.side / 2.0;
@@ -217,10 +219,17 @@ impl Chart {
                 match place {
                     Place::Core(ring) => svg.area(&[ring.iter().map(pixel).collect()], CORE),
                     Place::Shell(ring) => svg.area(&[ring.iter().map(pixel).collect()], SHELL),
-                    Place::Goal(at) => svg.star(pixel(at), 8.0, ATTRACTOR),
+                    Place::Start(_) | Place::Goal(_) => {}
                 }
             }
             self.lines().for_each(|s| s.draw(svg, &pixel));
+            for place in &self.places {
+                match place {
+                    Place::Core(_) | Place::Shell(_) => {}
+                    Place::Start(at) => svg.circle(pixel(at), 4.0, START),
+                    Place::Goal(at) => svg.star(pixel(at), 8.0, ATTRACTOR),
+                }
+            }
             for cell in &self.cells {
                 let size = (cell.side * axes.scale() * 0.36).min(FONT_SIZE);
                 let style = format!(

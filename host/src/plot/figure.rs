@@ -1,8 +1,10 @@
-//! Axes to draw in: from metres to pixels and back, ticks, and the few SVG elements figures are made of.
+//! Axes to draw in: from metres to pixels and back, and the few SVG elements figures are made of.
 
 use std::fmt::Write as _;
 
 use nalgebra::{Point2, Vector2};
+
+use super::ticks::{Tick, scale_ticks};
 
 /// A rectangle in data units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,22 +139,23 @@ impl Axes {
 
     /// Room that the numbers and the name of y need on the left, px.
     pub fn left_room(extent: &Extent, height: f64) -> f64 {
-        Self::room(extent, height / TICK_EVERY)
+        Self::room(extent, height, TICK_EVERY)
     }
 
     /// The same for [close ticks](Self::with_close_ticks).
     pub fn left_room_of_close_ticks(extent: &Extent, height: f64) -> f64 {
-        Self::room(extent, height / CLOSE_TICKS)
+        Self::room(extent, height, CLOSE_TICKS)
     }
 
-    fn room(extent: &Extent, wanted: f64) -> f64 {
-        let labels = ticks(extent.low.y, extent.high.y, wanted);
+    fn room(extent: &Extent, height: f64, every: f64) -> f64 {
+        let labels = scale_ticks(extent.low.y, extent.high.y, height, every, |_| FONT_SIZE);
         labels.iter().map(|t| text_width(&t.label)).fold(0.0, f64::max) + 28.0
     }
 
     fn ticks(&self) -> (Vec<Tick>, Vec<Tick>) {
         let Extent { low, high } = self.extent;
-        (ticks(low.x, high.x, self.size.x / self.tick_every), ticks(low.y, high.y, self.size.y / self.tick_every))
+        let x = scale_ticks(low.x, high.x, self.size.x, self.tick_every, text_width);
+        (x, scale_ticks(low.y, high.y, self.size.y, self.tick_every, |_| FONT_SIZE))
     }
 }
 
@@ -160,35 +163,6 @@ impl Axes {
 const TICK_EVERY: f64 = 62.0;
 /// The same in a small plot.
 const CLOSE_TICKS: f64 = 40.0;
-
-/// A tick.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Tick {
-    /// Where it is.
-    pub value: f64,
-    /// What is written there.
-    pub label: String,
-}
-
-/// About `wanted` ticks at round values between two ends.
-pub fn ticks(low: f64, high: f64, wanted: f64) -> Vec<Tick> {
-    let rough = (high - low) / wanted.max(1.0);
-    if !(rough > 0.0 && rough.is_finite()) {
-        return Vec::new();
-    }
-    let power = 10f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|s| *s >= rough * 0.8).unwrap_or(10.0 * power);
-    let decimals = usize::try_from(-(step * 1.001).log10().floor() as i64).unwrap_or(0);
-    let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
-    (first..=last)
-        .map(|i| {
-            let value = i as f64 * step;
-            // A true minus is as wide as a plus; a hyphen is not.
-            let label = format!("{:.decimals$}", if i == 0 { 0.0 } else { value }).replace('-', "\u{2212}");
-            Tick { value, label }
-        })
-        .collect()
-}
 
 /// Which part of a text is where it is put.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -279,6 +253,22 @@ impl Svg {
         self.path([tip, back + side, back + d * (length * 0.22), back - side], true, style);
     }
 
+    /// A square from its middle.
+    pub fn square(&mut self, at: Pixel, half: f64, style: &str) {
+        self.rect(at - Vector2::repeat(half), Vector2::repeat(2.0 * half), style);
+    }
+
+    /// A diagonal cross with a white edge; `colour` is of its lines.
+    pub fn cross(&mut self, at: Pixel, radius: f64, colour: &str) {
+        for (edge, width) in [("#ffffff", 4.6), (colour, 2.2)] {
+            let style = format!(r#"stroke="{edge}" stroke-width="{width}" stroke-linecap="round""#);
+            for side in [-1.0, 1.0] {
+                let arm = Vector2::new(radius, radius * side) * std::f64::consts::FRAC_1_SQRT_2;
+                self.line([at - arm, at + arm], &style);
+            }
+        }
+    }
+
     /// A five-pointed star.
     pub fn star(&mut self, at: Pixel, radius: f64, style: &str) {
         let points = (0..10).map(|i| {
@@ -350,15 +340,6 @@ fn outlines(rings: &[Vec<Pixel>]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn ticks_are_round_and_within() {
-        let labels = |low, high, n| ticks(low, high, n).into_iter().map(|t| t.label).collect::<Vec<_>>();
-        assert_eq!(labels(-0.05, 0.43, 5.0), ["0.0", "0.1", "0.2", "0.3", "0.4"]);
-        assert_eq!(labels(-1.0, 1.0, 4.0), ["\u{2212}1.0", "\u{2212}0.5", "0.0", "0.5", "1.0"]);
-        assert_eq!(labels(0.0, 100.0, 5.0), ["0", "20", "40", "60", "80", "100"]);
-        assert!(ticks(1.0, 1.0, 5.0).is_empty() && ticks(f64::NAN, 1.0, 5.0).is_empty());
-    }
 
     #[test]
     fn equal_axes_have_one_scale_and_y_upwards() {

@@ -54,6 +54,16 @@ pub(super) fn rings(area: &Region, axes: &Axes) -> Vec<Vec<Point2<f64>>> {
     rings
 }
 
+/// Draws with all regions cut out. `name` is unique in the figure.
+pub(super) fn beside(svg: &mut Svg, axes: &Axes, name: &str, regions: &[&Region], draw: &dyn Fn(&mut Svg)) {
+    let Some((first, others)) = regions.split_first() else {
+        return draw(svg);
+    };
+    let outside = Region { ring: first.ring.clone(), outside: !first.outside };
+    let id = format!("beside{name}-{}", others.len());
+    svg.within(&id, &rings(&outside, axes), |svg| beside(svg, axes, name, others, draw));
+}
+
 /// Without points that are within `tolerance` pixels of the line through their neighbours.
 pub(super) fn thinned(points: &[Point2<f64>], tolerance: f64) -> Vec<Point2<f64>> {
     let Some((&first, &last)) = points.first().zip(points.last()) else {

@@ -2,12 +2,14 @@
 
 use nalgebra::{Point2, Vector2};
 
-use super::figure::{Anchor, Axes, FONT_SIZE, Pixel, Svg, text_width, ticks};
+use super::figure::{Anchor, Axes, FONT_SIZE, Pixel, Svg, text_width};
 use super::panel::Panel;
 use super::style::{
-    ARRIVED, ATTRACTOR, ATTRACTOR_TRACK, BEFORE, BEHIND_CASING, CLEARANCE, CLEARANCE_END, CORE, DOT, FLOW, FLOW_HEAD,
-    LINE_COLOUR, MARGIN, OVERLAP, REFERENCE, SCAN, SCAN_POINT, SHELL, START, TRACK, speed_colour,
+    ARRIVED, ATTRACTOR, ATTRACTOR_TRACK, BEFORE, BEHIND_CASING, CLEARANCE, CLEARANCE_END, CORE, DOT, ENTRY, FLOW,
+    FLOW_HEAD, LINE_COLOUR, LOST, MARGIN, OVERLAP, REFERENCE, SCAN, SCAN_POINT, SHELL, START, TRACK, demonstration,
+    speed_colour,
 };
+use super::ticks::scale_ticks;
 
 /// The scale of speeds, right of the panels.
 pub(super) fn speed_scale(svg: &mut Svg, first: &Axes, bottom: f64, (low, high): (f64, f64)) {
@@ -18,7 +20,7 @@ pub(super) fn speed_scale(svg: &mut Svg, first: &Axes, bottom: f64, (low, high):
     let size = Vector2::new(11.0, height);
     svg.rect(corner, size, r##"fill="url(#speed)" stroke="#3a3f47" stroke-width="0.8""##);
     let mut widest = 0.0f64;
-    for t in ticks(low, high, height / 50.0) {
+    for t in scale_ticks(low, high, height, 50.0, |_| FONT_SIZE) {
         let y = corner.y + height * (1.0 - (t.value - low) / (high - low));
         let from = Point2::new(corner.x + size.x, y);
         svg.line([from, from + Vector2::new(3.0, 0.0)], r##"stroke="#3a3f47""##);
@@ -45,14 +47,22 @@ pub(super) fn draw(svg: &mut Svg, panels: &[&Panel<'_>], corner: Pixel, right: f
     let flow = if moving { "flow at that time" } else { "flow" };
     let clearance = if moving { "distance to the nearest core" } else { "nearest approach to a core" };
     let paths = any(&|p| p.has_paths());
+    let line = panels.iter().map(|p| p.line()).fold(0.0, f64::max);
     let entries: Vec<Entry<'_>> = vec![
         (true, "start".into(), Box::new(|svg, p| svg.circle(p, 4.2, START))),
         (true, "attractor".into(), Box::new(|svg, p| svg.star(p, 7.0, ATTRACTOR))),
         (any(&|p| p.has_aim()), "its way".into(), Box::new(|svg, p| dash(svg, p, ATTRACTOR_TRACK))),
         (moving && any(&|p| p.has_aim()), "arrived".into(), Box::new(|svg, p| svg.circle(p, 3.0, ARRIVED))),
         (moving, "robot".into(), Box::new(|svg, p| svg.circle(p, 3.6, DOT))),
-        (paths, path, Box::new(|svg, p| dash(svg, p, &stroke(3.2)))),
+        (paths, path, Box::new(|svg, p| dash(svg, p, &stroke(line)))),
         (moving, "path at other times".into(), Box::new(|svg, p| dash(svg, p, &stroke(1.3)))),
+        (
+            any(&|p| p.has_demonstrations()),
+            "demonstration".into(),
+            Box::new(|svg, p| dash(svg, p, &demonstration(line))),
+        ),
+        (any(&|p| p.has_entries()), "ends in a core".into(), Box::new(|svg, p| svg.cross(p, 4.5, ENTRY))),
+        (any(&|p| p.has_lost()), "never arrives".into(), Box::new(|svg, p| svg.square(p, 3.2, LOST))),
         (any(&|p| p.has_reference()), "path without obstacles".into(), Box::new(|svg, p| dash(svg, p, REFERENCE))),
         (
             any(&|p| p.has_hidden()),

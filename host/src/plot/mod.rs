@@ -25,6 +25,7 @@ mod seen;
 mod sheet;
 mod streamlines;
 mod style;
+mod ticks;
 mod trajectory;
 mod view;
 
@@ -59,12 +60,31 @@ pub struct Options {
     pub clearances: bool,
     /// A path to compare with, m; drawn under the trajectories.
     pub reference: Vec<Vector3<f64>>,
+    /// What the motion was learnt from, m; drawn under all paths.
+    pub demonstrations: Vec<Vec<Vector3<f64>>>,
+    /// Where trajectories ended in a core, m; each gets a cross.
+    pub entries: Vec<Vector3<f64>>,
+    /// Where others ended that never arrived, m; each gets a square.
+    pub lost: Vec<Vector3<f64>>,
+    /// How wide trajectories are drawn, px; where they start is marked the larger the wider they are.
+    pub line: f64,
 }
 
 impl Default for Options {
     /// At time 0, 560 pixels wide, with everything.
     fn default() -> Self {
-        Self { time: 0.0, width: 560.0, streamlines: true, speed: true, clearances: true, reference: Vec::new() }
+        Self {
+            time: 0.0,
+            width: 560.0,
+            streamlines: true,
+            speed: true,
+            clearances: true,
+            reference: Vec::new(),
+            demonstrations: Vec::new(),
+            entries: Vec::new(),
+            lost: Vec::new(),
+            line: 3.2,
+        }
     }
 }
 

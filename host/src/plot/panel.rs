@@ -5,15 +5,15 @@ use pliant_core::{Controller, Region, RobotState, Vector};
 
 use super::approach::{Clearance, Moment, clearance, nearest_approach};
 use super::figure::{Axes, Extent, Svg};
-use super::ink::{SPACING, draw_flow, draw_track, ring, rings, thinned};
+use super::ink::{SPACING, beside, draw_flow, draw_track, ring, rings, thinned};
 use super::labels::Labels;
-use super::outline::{Polygon, common};
+use super::outline::{self, Polygon, common};
 use super::paths::{self, Stroke};
 use super::seen::{Seen, track};
 use super::style::{
     ARRIVED, ATTRACTOR, ATTRACTOR_HEAD, ATTRACTOR_TRACK, BEFORE, BEFORE_INSIDE, CLEARANCE, CLEARANCE_CASING,
-    CLEARANCE_END, CORE, DOT, MARGIN, OVERLAP, OVERLAP_LINE, REFERENCE, SCAN, SCAN_POINT, SHELL, START, TRACK,
-    TRACK_HEAD,
+    CLEARANCE_END, CORE, DOT, ENTRY, LOST, MARGIN, OVERLAP, OVERLAP_LINE, REFERENCE, SCAN, SCAN_POINT, SHELL, START,
+    TRACK, TRACK_HEAD, demonstration,
 };
 use super::trajectory::TrajectoryPoint;
 use super::view::View;
@@ -46,7 +46,7 @@ pub(super) struct Panel<'a> {
     aim: Vec<Point2<f64>>,
     /// How near robots are to cores now; the nearest approach of each if this is no moment of several.
     clearances: Vec<Clearance>,
-    reference: &'a [Vector3<f64>],
+    options: &'a Options,
     /// Only in 2-D: a flow in space is not to be seen from one side.
     field: Option<Field>,
 }
@@ -99,7 +99,7 @@ impl<'a> Panel<'a> {
             commons,
             aim,
             clearances,
-            reference: &options.reference,
+            options,
             field,
         })
     }
@@ -136,7 +136,20 @@ impl<'a> Panel<'a> {
         self.scene.scan().is_some()
     }
     pub fn has_reference(&self) -> bool {
-        !self.reference.is_empty()
+        !self.options.reference.is_empty()
+    }
+    pub fn has_demonstrations(&self) -> bool {
+        !self.options.demonstrations.is_empty()
+    }
+    pub fn has_entries(&self) -> bool {
+        !self.options.entries.is_empty()
+    }
+    pub fn has_lost(&self) -> bool {
+        !self.options.lost.is_empty()
+    }
+    /// How wide paths are, px.
+    pub fn line(&self) -> f64 {
+        self.options.line
     }
     pub fn has_flow(&self) -> bool {
         self.field.is_some()
@@ -171,13 +184,14 @@ impl<'a> Panel<'a> {
         let places = self.scene.starts().iter().map(|p| self.view.project(p)).chain([self.attractor()]);
         let paths = self.trajectories.iter().flat_map(|t| &t.points).map(|p| self.view.project(&p.position));
         let regions = self.seen.iter().flat_map(|s| std::iter::once(&s.core).chain(&s.shell));
-        let reference = self.reference.iter().map(|p| self.view.project(p));
+        let others = self.options.reference.iter().chain(self.options.demonstrations.iter().flatten());
+        let others = others.map(|p| self.view.project(p));
         let shapes = regions.flat_map(|region| &region.ring).copied();
         let scan = self.scene.scan().into_iter().flat_map(|scan| {
             let corner = Vector2::from_element(scan.radius());
             scan.points().iter().map(|p| self.view.project(p)).flat_map(move |p| [p - corner, p + corner])
         });
-        Extent::around(places.chain(paths).chain(reference).chain(shapes).chain(scan).chain(self.aim.iter().copied()))
+        Extent::around(places.chain(paths).chain(others).chain(shapes).chain(scan).chain(self.aim.iter().copied()))
     }
 
     fn attractor(&self) -> Point2<f64> {
@@ -204,36 +218,53 @@ impl<'a> Panel<'a> {
         svg.clipped(&format!("panel{name}"), axes, |svg| {
             let pixel = |p: &Vector3<f64>| axes.pixel(&self.view.project(p));
             self.draw_flow(svg, axes);
-            self.draw_soft(svg, axes, name);
+            self.draw_soft(svg, axes);
+            let still = self.moment.tail.is_none();
+            // An overlap may be hardly wider than a path: that has its white edge under it then.
+            let edged = still && !self.overlaps.is_empty();
+            if !edged {
+                self.draw_overlaps(svg, axes, name);
+            }
+            for shown in &self.options.demonstrations {
+                let pixels: Vec<_> = shown.iter().map(pixel).collect();
+                svg.path(thinned(&pixels, 0.1), false, &demonstration(0.6 * self.line()));
+            }
             let draw = |svg: &mut Svg, part: &[TrajectoryPoint], stroke| {
-                paths::draw(svg, part, pixel, self.speeds, stroke);
+                paths::draw(svg, part, pixel, self.speeds, stroke, self.line());
             };
-            let starts = |svg: &mut Svg| self.scene.starts().iter().for_each(|p| svg.circle(pixel(p), 4.6, START));
+            let size = 1.0 + 1.125 * self.line();
+            let starts = |svg: &mut Svg| self.scene.starts().iter().for_each(|p| svg.circle(pixel(p), size, START));
             // Where robots were before, a core may have come since: it hides that. In space it hides what is behind it.
             let (mut under, mut over) = (Vec::new(), Vec::new());
             for t in self.trajectories {
                 let parts = paths::parts(self.thick(t), &self.seen, &self.view);
-                if self.is_projection() || self.moment.tail.is_none() {
+                if self.is_projection() || still {
                     over.extend(parts);
                 } else {
                     under.extend(parts);
                 }
             }
-            if self.moment.tail.is_some() {
+            if !still {
                 self.trajectories.iter().for_each(|t| draw(svg, &t.points, Stroke::Thin));
             }
-            let reference: Vec<_> = self.reference.iter().map(pixel).collect();
+            let reference: Vec<_> = self.options.reference.iter().map(pixel).collect();
             svg.path(thinned(&reference, 0.1), false, REFERENCE);
             under.iter().for_each(|(_, part)| draw(svg, part, Stroke::Thick));
-            if self.moment.tail.is_some() {
+            if !still {
                 starts(svg);
             }
             self.draw_hard(svg, axes, name);
             draw_track(svg, axes, &self.aim, ATTRACTOR_TRACK, ATTRACTOR_HEAD);
-            for (behind, part) in over {
-                draw(svg, part, if behind { Stroke::Dashed } else { Stroke::Thick });
+            if edged {
+                over.iter().for_each(|(_, part)| paths::edge(svg, part, pixel, self.line()));
+                let cores: Vec<&outline::Region> = self.seen.iter().map(|s| &s.core).collect();
+                beside(svg, axes, name, &cores, &|svg| self.draw_overlaps(svg, axes, name));
             }
-            if self.moment.tail.is_none() {
+            for (behind, part) in over {
+                let thick = if edged { Stroke::Bare } else { Stroke::Thick };
+                draw(svg, part, if behind { Stroke::Dashed } else { thick });
+            }
+            if still {
                 starts(svg);
             }
             let mut labels = Labels::new(axes);
@@ -250,25 +281,29 @@ impl<'a> Panel<'a> {
         draw_flow(svg, axes, &seen, SPACING);
     }
 
-    fn draw_soft(&self, svg: &mut Svg, axes: &Axes, name: &str) {
+    fn draw_soft(&self, svg: &mut Svg, axes: &Axes) {
         for s in &self.seen {
             s.before.iter().for_each(|before| svg.area(&[ring(before, axes)], BEFORE));
         }
         for shell in self.seen.iter().filter_map(|s| s.shell.as_ref()) {
             svg.area(&rings(shell, axes), SHELL);
         }
+        self.commons.iter().for_each(|area| svg.area(&[ring(area, axes)], OVERLAP));
+        if let Some(scan) = self.scene.scan() {
+            let points = || scan.points().iter().map(|p| axes.pixel(&self.view.project(p)));
+            points().for_each(|p| svg.circle(p, scan.radius() * axes.scale(), SCAN));
+            points().for_each(|p| svg.circle(p, 1.2, SCAN_POINT));
+        }
+    }
+
+    /// What soft layers have in common, in 2-D.
+    fn draw_overlaps(&self, svg: &mut Svg, axes: &Axes, name: &str) {
         for (n, (a, b)) in self.overlaps.iter().enumerate() {
             let shell = |i: usize| self.seen.get(i).and_then(|s| s.shell.as_ref()).map(|area| rings(area, axes));
             if let (Some(a), Some(b)) = (shell(*a), shell(*b)) {
                 svg.within(&format!("overlap{name}-{n}a"), &a, |svg| svg.area(&b, OVERLAP));
                 svg.within(&format!("overlap{name}-{n}b"), &b, |svg| svg.area(&a, OVERLAP_LINE));
             }
-        }
-        self.commons.iter().for_each(|area| svg.area(&[ring(area, axes)], OVERLAP));
-        if let Some(scan) = self.scene.scan() {
-            let points = || scan.points().iter().map(|p| axes.pixel(&self.view.project(p)));
-            points().for_each(|p| svg.circle(p, scan.radius() * axes.scale(), SCAN));
-            points().for_each(|p| svg.circle(p, 1.2, SCAN_POINT));
         }
     }
 
@@ -321,6 +356,8 @@ impl<'a> Panel<'a> {
         if self.moment.tail.is_none() {
             self.clearances.iter().for_each(|c| svg.circle(pixel(&c.robot), 2.2, CLEARANCE_END));
         }
+        self.options.lost.iter().for_each(|p| svg.square(pixel(p), 1.8 + self.line(), LOST));
+        self.options.entries.iter().for_each(|p| svg.cross(pixel(p), 1.8 + self.line(), ENTRY));
         for c in &self.clearances {
             labels.text(svg, nalgebra::center(&pixel(&c.robot), &pixel(&c.surface)), &c.label());
         }

@@ -5,7 +5,7 @@ use nalgebra::{Point2, Vector3};
 use super::figure::{Pixel, Svg};
 use super::ink::thinned;
 use super::seen::Seen;
-use super::style::{BEHIND_CASING, CASING, LINE_COLOUR, speed_colour};
+use super::style::{BEHIND_CASING, LINE_COLOUR, casing, speed_colour};
 use super::trajectory::TrajectoryPoint;
 use super::view::View;
 
@@ -13,25 +13,34 @@ use super::view::View;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stroke {
     Thick,
+    /// The same where its [`edge`] is there already.
+    Bare,
     Thin,
     /// Behind a core.
     Dashed,
 }
 
-/// A path through points on the page, coloured by speed if there is a range of speeds.
+/// The white edge of a path so many px wide.
+pub(super) fn edge(svg: &mut Svg, points: &[TrajectoryPoint], pixel: impl Fn(&Vector3<f64>) -> Pixel, line: f64) {
+    let pixels: Vec<Pixel> = points.iter().map(|p| pixel(&p.position)).collect();
+    svg.path(thinned(&pixels, 0.1), false, &casing(line));
+}
+
+/// A path through points on the page, `line` px wide where it is thick, coloured by speed if there is a range of speeds.
 pub(super) fn draw(
     svg: &mut Svg,
     points: &[TrajectoryPoint],
     pixel: impl Fn(&Vector3<f64>) -> Pixel,
     speeds: Option<(f64, f64)>,
     stroke: Stroke,
+    line: f64,
 ) {
-    let pixels: Vec<Pixel> = points.iter().map(|p| pixel(&p.position)).collect();
     if stroke == Stroke::Thick {
-        svg.path(thinned(&pixels, 0.1), false, CASING);
+        edge(svg, points, &pixel, line);
     }
+    let pixels: Vec<Pixel> = points.iter().map(|p| pixel(&p.position)).collect();
     let width = match stroke {
-        Stroke::Thick => 3.2,
+        Stroke::Thick | Stroke::Bare => line,
         Stroke::Thin => 1.3,
         Stroke::Dashed => 2.4,
     };

@@ -5,12 +5,13 @@ use nalgebra::{Point2, SVector, Vector2};
 use super::Figure;
 use super::figure::{Anchor, Axes, Extent, FONT_SIZE, Pixel, Svg, text_width};
 use super::ink::{SPACING, draw_flow, thinned};
-use super::style::{ATTRACTOR, FLOW, FLOW_HEAD, START};
+use super::style::{ATTRACTOR, FLOW, FLOW_HEAD, START, demonstration};
 use crate::learn::evaluate::Motion;
 use crate::learn::{Demonstrations, Unit, motion_of, quality, recordings};
 use crate::model::ModelFile;
 
-pub(super) const DEMONSTRATION: &str = r##"fill="none" stroke="#e8862a" stroke-opacity="0.75" stroke-width="2.6" stroke-linejoin="round" stroke-linecap="round""##;
+/// How wide demonstrations are, px: the learnt motion goes over them.
+const DEMONSTRATION: f64 = 2.6;
 pub(super) const ROLLOUT: &str = r##"fill="none" stroke="#1f5fbf" stroke-width="1.4" stroke-linejoin="round""##;
 
 /// A path as it is seen.
@@ -97,7 +98,7 @@ impl Seen {
     }
 
     pub(super) fn draw(&self, svg: &mut Svg, axes: &Axes, id: &str, spacing: f64) {
-        let lines = |svg: &mut Svg, all: &[Line], style| {
+        let lines = |svg: &mut Svg, all: &[Line], style: &str| {
             for line in all {
                 let pixels: Vec<_> = line.iter().map(|p| axes.pixel(p)).collect();
                 svg.path(thinned(&pixels, 0.1), false, style);
@@ -112,7 +113,7 @@ impl Seen {
                 };
                 draw_flow(svg, axes, &velocity, spacing);
             }
-            lines(svg, &self.demonstrations, DEMONSTRATION);
+            lines(svg, &self.demonstrations, &demonstration(DEMONSTRATION));
             lines(svg, &self.rollouts, ROLLOUT);
             self.rollouts.iter().filter_map(|r| r.first()).for_each(|p| svg.circle(axes.pixel(p), 2.6, START));
             svg.star(axes.pixel(&self.attractor), 7.0, ATTRACTOR);
@@ -154,7 +155,7 @@ pub fn portrait(skill: &Portrait, width: f64) -> Figure {
 pub(super) fn legend(svg: &mut Svg, corner: Pixel, right: f64, flow: bool) -> f64 {
     type Sign = fn(&mut Svg, Pixel);
     let entries: [(bool, &str, Sign); 5] = [
-        (true, "demonstration", |svg, p| dash(svg, p, DEMONSTRATION)),
+        (true, "demonstration", |svg, p| dash(svg, p, &demonstration(DEMONSTRATION))),
         (true, "learnt motion", |svg, p| dash(svg, p, ROLLOUT)),
         (true, "start", |svg, p| svg.circle(p, 2.6, START)),
         (true, "goal", |svg, p| svg.star(p, 7.0, ATTRACTOR)),

@@ -27,8 +27,10 @@ pub(super) const CLEARANCE_END: &str = r##"fill="#c2185b""##;
 pub(super) const BEHIND_CASING: &str = r##"fill="none" stroke="#ffffff" stroke-width="4""##;
 pub(super) const START: &str = r##"fill="#ffffff" stroke="#15181c" stroke-width="1.8""##;
 pub(super) const ATTRACTOR: &str = r##"fill="#ffd43b" stroke="#15181c" stroke-width="1.1" stroke-linejoin="round""##;
-pub(super) const CASING: &str =
-    r##"fill="none" stroke="#ffffff" stroke-width="5.4" stroke-linecap="round" stroke-linejoin="round""##;
+/// The line of a cross where a path ended in a core.
+pub(super) const ENTRY: &str = "#d0021b";
+/// A square where one was given up.
+pub(super) const LOST: &str = r##"fill="#d0021b" stroke="#ffffff" stroke-width="1.2""##;
 pub(super) const FLOW: &str = r##"fill="none" stroke="#9db0c4" stroke-width="1""##;
 pub(super) const FLOW_HEAD: &str = r##"fill="#8298af""##;
 /// Around the points of a scan, which are many: it does not hide them.
@@ -40,6 +42,21 @@ pub(super) const ATTRACTOR_TRACK: &str =
     r##"fill="none" stroke="#b8860b" stroke-width="1.6" stroke-dasharray="1.5 3" stroke-linecap="round""##;
 pub(super) const ATTRACTOR_HEAD: &str = r##"fill="#b8860b""##;
 pub(super) const TRACK_HEAD: &str = r##"fill="#343a43""##;
+
+/// Around a path so many px wide.
+pub(super) fn casing(line: f64) -> String {
+    let width = line + 2.2;
+    format!(
+        r##"fill="none" stroke="#ffffff" stroke-width="{width:.1}" stroke-linecap="round" stroke-linejoin="round""##
+    )
+}
+
+/// A demonstration so many px wide.
+pub(super) fn demonstration(line: f64) -> String {
+    format!(
+        r##"fill="none" stroke="#e8862a" stroke-opacity="0.75" stroke-width="{line}" stroke-linejoin="round" stroke-linecap="round""##
+    )
+}
 
 /// The colour of a speed between 0 (the least) and 1 (the largest): viridis without its lightest end, which white paper swallows.
 pub(super) fn speed_colour(share: f64) -> String {

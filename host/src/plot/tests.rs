@@ -238,3 +238,61 @@ fn a_scene_without_obstacles_or_trajectories_has_a_figure_too() {
     let options = Options { streamlines: false, ..Options::default() };
     assert!(scene_figure(&scene, &[], &options).unwrap().png().is_ok());
 }
+
+/// Two soft discs with a gap of 2 cm between their cores, and a path through it.
+const GAP: &str = "\
+[ds]
+linear = { attractor = [0.0, 0.0], gain = 1.0 }
+[limits]
+speed = 0.5
+[[start]]
+position = [0.5, 0.0]
+[[obstacle]]
+name = \"above\"
+shape = { ellipsoid = [0.04, 0.04] }
+center = [0.25, 0.05]
+stiffness = 1.6487
+[[obstacle]]
+name = \"below\"
+shape = { ellipsoid = [0.04, 0.04] }
+center = [0.25, -0.05]
+stiffness = 1.6487
+";
+
+#[test]
+fn an_overlap_is_over_the_edge_of_a_path_and_under_the_path() {
+    let scene = Scene::parse("gap.toml", GAP, Path::new(".")).unwrap();
+    let straight: Vec<Vector3<f64>> = (0..=100).map(|i| Vector3::new(0.5 - f64::from(i) * 5e-3, 0.0, 0.0)).collect();
+    let paths = [Trajectory::from_positions(&straight, 0.01)];
+    let options = Options { speed: false, clearances: false, ..Options::default() };
+    let text = scene_figure(&scene, &paths, &options).unwrap().svg().to_owned();
+    let line = format!(r#"stroke="{}" stroke-width="3.2""#, style::LINE_COLOUR);
+    let at = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what}"));
+    let edge = style::casing(3.2);
+    assert!(at(style::CORE) < at(&edge) && at(&edge) < at(style::OVERLAP) && at(style::OVERLAP) < at(&line));
+    // It does not hide the cores: both are cut out.
+    assert_eq!(text.matches(r#"clipPath id="beside"#).count(), 2);
+}
+
+#[test]
+fn where_paths_end_before_the_goal_is_marked_and_so_is_what_was_shown() {
+    let scene = Scene::parse("gap.toml", GAP, Path::new(".")).unwrap();
+    let text = |options: &Options| scene_figure(&scene, &[], options).unwrap().svg().to_owned();
+    let plain = text(&Options::default());
+    for word in ["ends in a core", "never arrives", "demonstration"] {
+        assert!(!plain.contains(word), "{word}");
+    }
+    let marked = text(&Options {
+        entries: vec![Vector3::new(0.25, 0.03, 0.0)],
+        lost: vec![Vector3::new(0.3, 0.0, 0.0); 2],
+        demonstrations: vec![vec![Vector3::new(0.5, 0.0, 0.0), Vector3::zeros()]],
+        ..Options::default()
+    });
+    // Each sign once more, in the legend; a cross has two lines.
+    assert_eq!(marked.matches(&format!(r#"stroke="{}""#, style::ENTRY)).count(), 4);
+    assert_eq!(marked.matches(style::LOST).count(), 3);
+    assert_eq!(marked.matches("#e8862a").count(), 2);
+    for word in ["ends in a core", "never arrives", "demonstration"] {
+        assert!(marked.contains(&format!(">{word}</text>")), "{word}");
+    }
+}

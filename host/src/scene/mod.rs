@@ -252,12 +252,6 @@ impl Scene {
     pub fn starts(&self) -> &[Vector3<f64>] {
         &self.starts
     }
-    /// The same with the first `count` of its starts, at least one.
-    pub fn with_first_starts(&self, count: usize) -> Self {
-        let mut fewer = self.clone();
-        fewer.starts.truncate(count.max(1));
-        fewer
-    }
     /// The obstacles in the order of the file; the place in it is an obstacle's id.
     pub fn obstacles(&self) -> &[SceneObstacle] {
         &self.obstacles

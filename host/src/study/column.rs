@@ -50,16 +50,38 @@ impl Column {
             Self::Letter(_) | Self::Pliant => self.title(),
         }
     }
+}
+
+/// A column's velocity with or without the guard, whichever it has by itself: what tells the part of the one from that of the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    /// How the velocity is computed.
+    pub column: Column,
+    /// Is it guarded?
+    pub guard: bool,
+}
+
+impl Way {
+    /// A column with the guard if it has none, and without if it has one.
+    pub fn other(column: Column) -> Self {
+        Self { guard: !Self::from(column).guard, column }
+    }
 
     /// The part of a scene file that says so.
     pub fn toml(self) -> String {
-        match self {
-            Self::Letter(theta) => {
-                format!("[modulation]\nc = {GAIN:?}\nsteering = {{ fixed = {theta:?} }}\n[guard]\nenabled = false\n")
-            }
-            Self::Pliant => format!("[modulation]\nc = {GAIN:?}\n"),
-            Self::Original => "[modulation]\nmethod = \"original\"\n[guard]\nenabled = false\n".into(),
-        }
+        let modulation = match self.column {
+            Column::Letter(theta) => format!("c = {GAIN:?}\nsteering = {{ fixed = {theta:?} }}\n"),
+            Column::Pliant => format!("c = {GAIN:?}\n"),
+            Column::Original => "method = \"original\"\n".into(),
+        };
+        format!("[modulation]\n{modulation}{}", if self.guard { "" } else { "[guard]\nenabled = false\n" })
+    }
+}
+
+impl From<Column> for Way {
+    /// As the column is: only Pliant's has a guard.
+    fn from(column: Column) -> Self {
+        Self { column, guard: column == Column::Pliant }
     }
 }
 

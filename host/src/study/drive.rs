@@ -20,6 +20,16 @@ pub enum Robot {
     Lagging,
 }
 
+impl Robot {
+    /// Ticks until it is up to speed from rest: one, or ten times its lag, when e^-10 of the way there is left. What is before tells of the start alone.
+    pub fn ramp(self) -> usize {
+        match self {
+            Self::Exact => 1,
+            Self::Lagging => (10.0 * PointRobot::LAG / TICK).round() as usize,
+        }
+    }
+}
+
 /// A millisecond of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
@@ -141,34 +141,22 @@ fn decides(vital: bool) -> String {
     if vital { "yes" } else { "no" }.into()
 }
 
-/// A folder to write into. Those that were made for it are gone again where nothing came into them.
-#[derive(Debug)]
-#[must_use = "dropped, it takes the empty folder away"]
-pub struct Prepared {
-    made: Vec<PathBuf>,
-}
-
-impl Drop for Prepared {
-    fn drop(&mut self) {
-        // Only what is empty can be removed so.
-        for folder in &self.made {
-            let _ = fs::remove_dir(folder);
-        }
-    }
-}
-
-/// Makes the folder, and sees that a file can be written into it, before anything is computed for it.
+/// Sees that files can be written into a folder, before anything is computed for it. What it makes for that it removes again: a study that fails
+/// leaves nothing behind.
 ///
 /// # Errors
-/// It cannot.
-pub fn prepare(folder: &Path) -> Result<Prepared, Error> {
+/// They cannot.
+pub fn check_writable(folder: &Path) -> Result<(), Error> {
     let failed = |e: std::io::Error| Error::bad_input(format!("{}: cannot be written to: {e}", folder.display()));
-    let missing = folder.ancestors().take_while(|f| !f.as_os_str().is_empty() && !f.exists());
-    let prepared = Prepared { made: missing.map(Path::to_path_buf).collect() };
-    fs::create_dir_all(folder).map_err(failed)?;
+    let missing: Vec<&Path> = folder.ancestors().take_while(|f| !f.as_os_str().is_empty() && !f.exists()).collect();
     let probe = folder.join(".pliant-can-write");
-    fs::write(&probe, "").and_then(|()| fs::remove_file(&probe)).map_err(failed)?;
-    Ok(prepared)
+    let written =
+        fs::create_dir_all(folder).and_then(|()| fs::write(&probe, "")).and_then(|()| fs::remove_file(&probe));
+    for made in missing {
+        // One that was not made, or that another program has since put something into, stays.
+        let _ = fs::remove_dir(made);
+    }
+    written.map_err(failed)
 }
 
 fn put(path: &Path, text: &str) -> Result<(), Error> {
@@ -189,6 +177,18 @@ mod tests {
             vital: *vital,
         };
         Findings { verdicts: verdicts.iter().map(verdict).collect(), ..Findings::default() }
+    }
+
+    #[test]
+    fn looking_whether_a_folder_can_be_written_to_leaves_no_trace() {
+        let folder = std::env::temp_dir().join(format!("pliant-writable-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        check_writable(&folder).unwrap();
+        check_writable(&folder.join("new/out")).unwrap();
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 0, "what was there stays, what was not is not");
+        fs::write(folder.join("file"), "").unwrap();
+        assert!(check_writable(&folder.join("file/out")).is_err());
+        fs::remove_dir_all(folder).unwrap();
     }
 
     #[test]

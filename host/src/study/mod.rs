@@ -43,7 +43,8 @@ pub fn time(skills: &Skills, done: &(dyn Fn(usize) + Sync)) -> Result<Findings, 
     let (mut found, left) = stiffness_time::study(skills, done)?;
     let (other, right) = reduction::study(skills, done)?;
     found.append(other);
-    let caption = "Time past an obstacle as its soft layer becomes thicker, and time saved against the original method by where a motion starts";
+    let caption = "Time past an obstacle as its soft layer becomes thicker, and time saved against the original method by where a motion starts \
+                   (a cell a start, in an area as large as the paper's; the circle is where the demonstrations start in the mean, the star the goal)";
     found.figures.push(("time", caption.into(), charts(&[left, right], 2, 560.0)));
     Ok(found)
 }

@@ -1,82 +1,24 @@
 //! What the paper does not show: its method at places it did not choose, on both sides of passing, as distributions.
 
+mod ablation;
 mod angles;
 mod draw;
 mod figure;
+mod run;
 
 use serde_json::{Map, Value, json};
 
 use super::column::Column;
-use super::drive::{Drive, Driving, Robot, drive};
 use super::findings::{Findings, Verdict};
-use super::measure::{self, change_percent, quantile, sorted};
+use super::measure::{quantile, sorted};
 use super::parallel;
-use super::skill::{Skill, Skills};
+use super::skill::Skills;
 use super::table::{Table, number};
-use super::world::World;
 use crate::error::Error;
+use run::{After, Measured, Passed};
 
 /// Places where the user does not say.
 pub const COUNT: usize = 1000;
-
-/// Below this speed, m/s, farther than [`FAR`] from the goal a robot counts as stalled.
-const STALLED: f64 = 0.005;
-/// m
-const FAR: f64 = 0.03;
-
-/// What is measured of a run.
-#[derive(Clone, Copy, Debug)]
-struct Measured {
-    reached: bool,
-    /// Was Gamma below 1? A robot that rests on a surface, at 1, stalls.
-    entered: bool,
-    stalled: bool,
-    time: f64,
-    min_gamma: f64,
-    soft_speed: Option<f64>,
-    jerk: f64,
-    jump: f64,
-    guarded: f64,
-}
-
-impl Measured {
-    fn of(drive: &Drive, skill: &Skill) -> Self {
-        let goal = skill.goal();
-        let still = |s: &super::drive::Step| s.velocity.norm() < STALLED && (s.position - goal).norm() > FAR;
-        Self {
-            reached: drive.reached,
-            entered: drive.min_gamma() < 1.0,
-            // The first step stands: the robot has not been told anything yet.
-            stalled: drive.steps.iter().skip(1).any(still),
-            time: drive.time(),
-            min_gamma: drive.min_gamma(),
-            soft_speed: measure::mean_speed(drive, |s| s.layers > 0 && s.gamma > 1.0),
-            jerk: measure::jerk(drive),
-            jump: measure::largest_jump(drive),
-            guarded: measure::guarded(drive),
-        }
-    }
-}
-
-/// One obstacle on one side of the path, each way; the order is that of [`Column::ALL`].
-#[derive(Clone, Copy, Debug)]
-struct Passed {
-    left: bool,
-    runs: [Measured; 3],
-}
-
-impl Passed {
-    /// Change of mean speed in the soft layer against the original method, percent.
-    fn speed_change(&self, column: usize) -> Option<f64> {
-        Some(change_percent(self.runs[column].soft_speed?, self.runs[2].soft_speed?))
-    }
-
-    /// Change of the time to the goal, likewise.
-    fn time_change(&self, column: usize) -> Option<f64> {
-        let (ours, original) = (&self.runs[column], &self.runs[2]);
-        (ours.reached && original.reached).then(|| change_percent(ours.time, original.time))
-    }
-}
 
 /// Runs all.
 ///
@@ -86,16 +28,7 @@ pub fn study(skills: &Skills, count: usize, seed: u64, done: &(dyn Fn(usize) + S
     let skill = &skills.s;
     let bodies: Vec<_> =
         draw::pairs(skill, count, seed).into_iter().flat_map(|[l, r]| [(true, l), (false, r)]).collect();
-    let all = parallel::map(&bodies, done, |(left, body)| {
-        let world = World { timeout: 15.0, ..World::new(skill, vec![body.clone()]) };
-        let driving = Driving { ends_at_contact: true, ..Driving::of(Robot::Exact) };
-        let run = |column| {
-            let scene = world.scene("placement", column)?;
-            Ok::<_, Error>(Measured::of(&drive(&scene, &skill.start, &driving, None)?, skill))
-        };
-        let [letter, pliant, original] = Column::ALL.map(run);
-        Ok(Passed { left: *left, runs: [letter?, pliant?, original?] })
-    })?;
+    let all = parallel::map(&bodies, done, |(left, body)| Passed::of(skill, *left, body))?;
     let angles = angles::study(skill, done)?;
     let mut json = Map::new();
     json.insert("placements".into(), summary(&all, count));
@@ -112,7 +45,7 @@ pub fn study(skills: &Skills, count: usize, seed: u64, done: &(dyn Fn(usize) + S
             angles::figure(&angles),
         ),
     ];
-    let tables = vec![counts(&all, count), quantiles(&all), angles::table(&angles)];
+    let tables = vec![counts(&all, count), ablation::table(&all), quantiles(&all), angles::table(&angles)];
     Ok(Findings { tables, figures, verdicts, json, ..Findings::default() })
 }
 
@@ -123,16 +56,20 @@ fn share(all: &[Passed], side: Option<bool>, is: impl Fn(&Passed) -> Option<bool
 }
 
 /// What is counted; none where it cannot be said.
-type Count = (&'static str, &'static str, fn(&Passed, usize) -> Option<bool>);
+type Count = (&'static str, &'static str, fn(&Passed, &Measured) -> Option<bool>);
 
-const COUNTS: [Count; 5] = [
-    ("reached the goal", "reached", |p, c| Some(p.runs[c].reached)),
-    ("slower than the original in the layer, of those that were there", "slower", |p, c| {
-        Some(p.speed_change(c)? < 0.0)
+const COUNTS: [Count; 7] = [
+    ("reached the goal", "reached", |_, m| Some(m.reached)),
+    ("slower than the original in the layer, of those that were there", "slower", |p, m| {
+        Some(p.speed_change(m)? < 0.0)
     }),
-    ("stalled on the way", "stalled", |p, c| Some(p.runs[c].stalled)),
-    ("entered a hard core", "penetrated", |p, c| Some(p.runs[c].entered)),
-    ("guard acted", "guarded", |p, c| Some(p.runs[c].guarded > 0.0)),
+    ("stalled on the way", "stalled", |_, m| Some(m.stalled)),
+    ("entered a hard core", "penetrated", |_, m| Some(m.entered)),
+    ("ended at a core; had it gone on through it, it would have stalled", "would_stall", |_, m| Some(m.would_stall())),
+    ("ended at a core; had it gone on through it, it would have arrived", "would_arrive", |_, m| {
+        Some(m.after == Some(After::Arrives))
+    }),
+    ("guard acted", "guarded", |_, m| Some(m.guarded > 0.0)),
 ];
 
 fn counts(all: &[Passed], count: usize) -> Table {
@@ -144,7 +81,7 @@ fn counts(all: &[Passed], count: usize) -> Table {
     for (name, _, is) in COUNTS {
         let cell = |c: usize| {
             let percent = |left| {
-                let (n, of) = share(all, Some(left), |p| is(p, c));
+                let (n, of) = share(all, Some(left), |p| is(p, &p.runs[c]));
                 number((of > 0).then(|| n as f64 / of as f64 * 100.0), 1)
             };
             format!("{} / {}", percent(true), percent(false))
@@ -158,58 +95,58 @@ fn counts(all: &[Passed], count: usize) -> Table {
 struct Quantity {
     /// What it is.
     name: &'static str,
-    /// Its unit, or what it is measured by.
+    /// What of it is shown, and its unit.
     unit: &'static str,
     /// What JSON calls it.
     key: &'static str,
     /// As many are written.
     decimals: usize,
-    /// Its value for a column.
-    of: fn(&Passed, usize) -> Option<f64>,
+    /// Its value for a run.
+    of: fn(&Passed, &Measured) -> Option<f64>,
 }
 
 const QUANTITIES: [Quantity; 6] = [
     Quantity {
-        name: "speed in the layer",
-        unit: "against the original (%)",
+        name: "speed in the soft layer",
+        unit: "change against the original (%)",
         key: "speed_change_percent",
         decimals: 1,
         of: Passed::speed_change,
     },
     Quantity {
         name: "time to the goal",
-        unit: "against the original (%)",
+        unit: "change against the original (%)",
         key: "time_change_percent",
         decimals: 2,
         of: Passed::time_change,
     },
     Quantity {
-        name: "time",
-        unit: "to the goal (s)",
+        name: "time to the goal",
+        unit: "seconds",
         key: "time_s",
         decimals: 2,
-        of: |p, c| p.runs[c].reached.then_some(p.runs[c].time),
+        of: |_, m| m.reached.then_some(m.time),
     },
     Quantity {
         name: "nearest to a core",
-        unit: "min Gamma",
+        unit: "min Gamma (1: its surface)",
         key: "min_gamma",
         decimals: 3,
-        of: |p, c| Some(p.runs[c].min_gamma),
+        of: |_, m| Some(m.min_gamma),
     },
     Quantity {
         name: "jerk",
         unit: "root mean square (m/s\u{b3})",
         key: "rms_jerk",
         decimals: 1,
-        of: |p, c| Some(p.runs[c].jerk),
+        of: |_, m| Some(m.jerk),
     },
     Quantity {
-        name: "largest jump in 1 ms",
-        unit: "of velocity (m/s)",
+        name: "jump of velocity",
+        unit: "largest in 1 ms (m/s)",
         key: "velocity_jump",
         decimals: 4,
-        of: |p, c| Some(p.runs[c].jump),
+        of: |_, m| Some(m.jump),
     },
 ];
 
@@ -226,7 +163,7 @@ fn quantiles(all: &[Passed]) -> Table {
     );
     for q in QUANTITIES {
         let cell = |c: usize| {
-            let all = values(all, |p| (q.of)(p, c));
+            let all = values(all, |p| (q.of)(p, &p.runs[c]));
             [0.05, 0.5, 0.95].map(|share| number(quantile(&all, share), q.decimals)).join(", ")
         };
         table.push([format!("{}, {}", q.name, q.unit), cell(0), cell(1), cell(2)]);
@@ -237,15 +174,16 @@ fn quantiles(all: &[Passed]) -> Table {
 fn summary(all: &[Passed], count: usize) -> Value {
     let mut out = Map::new();
     out.insert("count".into(), count.into());
+    out.insert("ablation".into(), ablation::json(all));
     for (c, column) in Column::ALL.into_iter().enumerate() {
         let mut of = Map::new();
         for (_, key, is) in COUNTS {
-            let side = |left| share(all, left, |p| is(p, c));
+            let side = |left| share(all, left, |p| is(p, &p.runs[c]));
             let ((left, left_of), (right, right_of)) = (side(Some(true)), side(Some(false)));
             of.insert(key.into(), json!({ "left": left, "right": right, "left_of": left_of, "right_of": right_of }));
         }
         for q in QUANTITIES {
-            let all = values(all, |p| (q.of)(p, c));
+            let all = values(all, |p| (q.of)(p, &p.runs[c]));
             let at = |share| quantile(&all, share);
             of.insert(
                 q.key.into(),
@@ -258,12 +196,12 @@ fn summary(all: &[Passed], count: usize) -> Value {
 }
 
 fn verdicts(all: &[Passed]) -> Vec<Verdict> {
-    let count = |what: usize, c: usize| share(all, None, |p| COUNTS[what].2(p, c)).0;
-    let [late, slower, stalled, entered] = [0, 1, 2, 3].map(|what| {
+    let count = |what: usize, c: usize| share(all, None, |p| COUNTS[what].2(p, &p.runs[c])).0;
+    let [late, slower, stalled, entered, would_stall] = [0, 1, 2, 3, 4].map(|what| {
         let of = |c| if what == 0 { all.len() - count(0, c) } else { count(what, c) };
         [of(0), of(1), of(2)]
     });
-    let met = |c: usize| share(all, None, |p| COUNTS[1].2(p, c)).1;
+    let met = |c: usize| share(all, None, |p| COUNTS[1].2(p, &p.runs[c])).1;
     let measured = !all.is_empty();
     vec![
         Verdict {
@@ -277,7 +215,13 @@ fn verdicts(all: &[Passed]) -> Vec<Verdict> {
             claim: "all arrive, and none stalls".into(),
             paper: "-".into(),
             measured: [("", 1), ("; to the letter ", 0), ("; original: ", 2)]
-                .map(|(who, c)| format!("{who}{} do not arrive, {} stall", late[c], stalled[c]))
+                .map(|(who, c)| {
+                    let more = match would_stall[c] {
+                        0 => String::new(),
+                        n => format!(" and {n} would, had they not ended at a core"),
+                    };
+                    format!("{who}{} do not arrive, {} stall{more}", late[c], stalled[c])
+                })
                 .concat(),
             holds: measured.then_some(late[1] + stalled[1] == 0),
             vital: false,

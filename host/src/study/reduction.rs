@@ -8,7 +8,7 @@ use serde_json::{Map, json};
 use super::column::Column;
 use super::drive::{Driving, Robot, drive};
 use super::findings::{Findings, Verdict};
-use super::measure::sorted;
+use super::measure::{rank_correlation, sorted};
 use super::parallel;
 use super::skill::{Skill, Skills};
 use super::stiffness_time::{UNIT, obstacle};
@@ -33,6 +33,8 @@ struct Start {
     original: Option<f64>,
     /// Does either pass through the soft layer?
     soft: bool,
+    /// How near the original method's path comes to the core: its least Gamma.
+    gamma: f64,
 }
 
 impl Start {
@@ -70,14 +72,16 @@ pub fn study(skills: &Skills, done: &(dyn Fn(usize) + Sync)) -> Result<(Findings
         let run = |scene| drive(scene, at, &driving, None);
         let (letter, pliant, original) = (run(&letter)?, run(&pliant)?, run(&original)?);
         let soft = [&pliant, &original].iter().any(|d| d.steps.iter().any(|s| s.layers > 0));
+        let gamma = original.min_gamma();
         let [letter, pliant, original] = [letter, pliant, original].map(|d| d.reached.then(|| d.time()));
-        Ok(Start { at: *at, pliant, letter, original, soft })
+        Ok(Start { at: *at, pliant, letter, original, soft, gamma })
     })?;
     let title = "Time to the goal by where it starts; reduction against the original method in percent";
     let header = [
         "x m",
         "y m",
         "original s",
+        "original, min Gamma",
         "Pliant's default s",
         "paper to the letter s",
         "reduction, default",
@@ -89,45 +93,84 @@ pub fn study(skills: &Skills, done: &(dyn Fn(usize) + Sync)) -> Result<(Findings
             number(s.at.x, 3),
             number(s.at.y, 3),
             number(s.original, 3),
+            number(s.gamma, 3),
             number(s.pliant, 3),
             number(s.letter, 3),
             signed(s.reduction(), 2),
             signed(s.percent(s.letter), 2),
         ]);
     }
-    let summary = |of: &dyn Fn(&Start) -> Option<f64>, through: bool| {
-        let all = sorted(found.iter().filter(|s| !through || s.soft).filter_map(of));
-        let mean = (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64);
-        json!({ "mean": mean, "max": all.last(), "min": all.first(), "starts": all.len() })
-    };
-    let mine = summary(&Start::reduction, false);
-    let near = summary(&Start::reduction, true);
-    let mut claims = mine.clone();
-    if let Some(claims) = claims.as_object_mut() {
-        claims.insert("through_the_layer".into(), near.clone());
-        claims.insert("letter".into(), summary(&|s| s.percent(s.letter), false));
-    }
+    let mut claims = json!(Saved::of(found.iter().filter_map(Start::reduction)));
+    claims["through_the_layer"] = json!(Saved::of(found.iter().filter(|s| s.soft).filter_map(Start::reduction)));
+    claims["letter"] = json!(Saved::of(found.iter().filter_map(|s| s.percent(s.letter))));
+    claims["rank_correlation_with_min_gamma"] = json!(closeness(&found));
     let mut json = Map::new();
     json.insert("claims".into(), json!({ "time_reduction_percent": claims }));
-    let value = |v: &serde_json::Value, key: &str| v.get(key).and_then(serde_json::Value::as_f64);
-    let arrived = found.iter().filter(|s| s.pliant.is_some()).count();
-    let verdict = Verdict {
-        claim: "less time than by the original method, most where paths pass close to the core".into(),
-        paper: "less".into(),
-        measured: format!(
-            "{} % in the mean, {} % at most; {} % where paths meet the soft layer ({} of {} starts); {arrived} arrive",
-            signed(value(&mine, "mean"), 2),
-            signed(value(&mine, "max"), 2),
-            signed(value(&near, "mean"), 2),
-            near.get("starts").cloned().unwrap_or_default(),
-            found.len()
-        ),
-        holds: value(&mine, "min")
-            .map(|least| arrived == found.len() && least > -0.5 && value(&near, "mean") > value(&mine, "mean")),
-        vital: false,
-    };
-    let findings = Findings { tables: vec![table], verdicts: vec![verdict], json, ..Findings::default() };
+    let findings = Findings { tables: vec![table], verdicts: verdicts(&found), json, ..Findings::default() };
     Ok((findings, map(skill, &found, &body)))
+}
+
+/// Time saved against the original method, percent; none where nothing can be compared.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+struct Saved {
+    mean: Option<f64>,
+    max: Option<f64>,
+    min: Option<f64>,
+    starts: usize,
+}
+
+impl Saved {
+    fn of(all: impl Iterator<Item = f64>) -> Self {
+        let all = sorted(all);
+        let mean = (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64);
+        Self { mean, max: all.last().copied(), min: all.first().copied(), starts: all.len() }
+    }
+}
+
+/// How what is saved goes with the least Gamma of the original method's path, over starts from which a path meets the soft layer: below zero where
+/// those that pass closer to the core save more. The others save nothing, and would say no more than that they are far.
+fn closeness(found: &[Start]) -> Option<f64> {
+    let through = found.iter().filter(|s| s.soft).filter_map(|s| Some((s.gamma, s.reduction()?)));
+    rank_correlation(&through.collect::<Vec<_>>())
+}
+
+fn verdicts(found: &[Start]) -> Vec<Verdict> {
+    let all = Saved::of(found.iter().filter_map(Start::reduction));
+    let through = Saved::of(found.iter().filter(|s| s.soft).filter_map(Start::reduction));
+    let arrived = found.iter().filter(|s| s.pliant.is_some()).count();
+    let closeness = closeness(found);
+    vec![
+        Verdict {
+            claim:
+                "no start takes longer than by the original method, and where paths meet the soft layer time is saved"
+                    .into(),
+            paper: "less".into(),
+            measured: format!(
+                "{} % in the mean, {} to {} %; {} % in the mean of the {} of {} starts from which a path meets the layer; {arrived} arrive",
+                signed(all.mean, 2),
+                signed(all.min, 2),
+                signed(all.max, 2),
+                signed(through.mean, 2),
+                through.starts,
+                found.len()
+            ),
+            holds: all
+                .min
+                .map(|least| arrived == found.len() && least >= 0.0 && through.mean.is_none_or(|mean| mean > 0.0)),
+            vital: false,
+        },
+        Verdict {
+            claim: "of paths that meet the soft layer those that pass closer to the core save more".into(),
+            paper: "yes".into(),
+            measured: format!(
+                "rank correlation of the time saved with the least Gamma by the original method {} over {} starts",
+                signed(closeness, 2),
+                through.starts
+            ),
+            holds: closeness.map(|r| r < 0.0),
+            vital: false,
+        },
+    ]
 }
 
 fn map(skill: &Skill, found: &[Start], body: &super::world::Body) -> Chart {
@@ -155,7 +198,12 @@ fn map(skill: &Skill, found: &[Start], body: &super::world::Body) -> Chart {
         x: "x of the start (m)".into(),
         y: "y of the start (m)".into(),
         cells: cells.collect(),
-        places: vec![Place::Shell(ring(RATIO)), Place::Core(ring(1.0)), Place::Goal((goal.x, goal.y))],
+        places: vec![
+            Place::Shell(ring(RATIO)),
+            Place::Core(ring(1.0)),
+            Place::Start((skill.start.x, skill.start.y)),
+            Place::Goal((goal.x, goal.y)),
+        ],
         guides: vec![Series::line(
             "path without obstacles",
             Colour::Reference,
@@ -163,5 +211,43 @@ fn map(skill: &Skill, found: &[Start], body: &super::world::Body) -> Chart {
         )],
         map: true,
         ..Chart::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Starts from which the original takes 1 s, with what is saved (%) and the least Gamma; those from 2 on do not meet the layer.
+    fn starts(all: &[(f64, f64)]) -> Vec<Start> {
+        let one = |&(saved, gamma): &(f64, f64)| Start {
+            at: Vector2::zeros(),
+            pliant: Some(1.0 - saved / 100.0),
+            letter: None,
+            original: Some(1.0),
+            soft: gamma < 2.0,
+            gamma,
+        };
+        all.iter().map(one).collect()
+    }
+
+    #[test]
+    fn that_closer_paths_save_more_can_fail() {
+        let holds = |all: &[(f64, f64)]| verdicts(&starts(all)).iter().map(|v| v.holds).collect::<Vec<_>>();
+        let far = [(0.0, 3.0), (0.0, 4.0)];
+        let with = |near: [(f64, f64); 4]| holds(&[&near[..], &far].concat());
+        assert_eq!(with([(9.0, 1.1), (5.0, 1.2), (6.0, 1.4), (1.0, 1.8)]), [Some(true), Some(true)]);
+        // As much in all, but it is the far ones of them that save.
+        assert_eq!(with([(1.0, 1.1), (6.0, 1.2), (5.0, 1.4), (9.0, 1.8)]), [Some(true), Some(false)]);
+        // One is slower; all are.
+        assert_eq!(with([(9.0, 1.1), (5.0, 1.2), (6.0, 1.4), (-0.1, 1.8)]), [Some(false), Some(true)]);
+        assert_eq!(with([(-1.0, 1.1), (-2.0, 1.2), (-3.0, 1.4), (-9.0, 1.8)]), [Some(false), Some(true)]);
+        // Where all save alike, or no path meets the layer, there is no order to find.
+        assert_eq!(with([(1.0, 1.1), (1.0, 1.2), (1.0, 1.4), (1.0, 1.8)]), [Some(true), None]);
+        assert_eq!(holds(&far), [Some(true), None]);
+        assert_eq!(holds(&[]), [None, None]);
+        let mut late = starts(&[(9.0, 1.1), (5.0, 1.2), (1.0, 1.4)]);
+        late[2].pliant = None;
+        assert_eq!(verdicts(&late)[0].holds, Some(false), "one does not arrive");
     }
 }

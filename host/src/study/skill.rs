@@ -118,6 +118,8 @@ pub struct Skills {
     pub leaf: Skill,
     /// Its own recording with five obstacles; here always the project's arch, for that recording is not published.
     pub recorded: Skill,
+    /// What that was learnt from, m.
+    pub recordings: Vec<Vec<Vector2<f64>>>,
     /// Is this LASA handwriting?
     pub lasa: bool,
 }
@@ -127,6 +129,16 @@ const OWN: [(&str, &str, [f64; 2]); 3] = [
     ("sbend", include_str!("../../../models/sbend.toml"), [0.37, 0.41]),
     ("arch", include_str!("../../../models/arch.toml"), [-0.42, -0.02]),
     ("hook", include_str!("../../../models/hook.toml"), [0.26, 0.28]),
+];
+/// The demonstrations of the arch, as they are in `demos/arch`.
+const ARCH: [(&str, &str); 7] = [
+    ("arch-1.csv", include_str!("../../../demos/arch/arch-1.csv")),
+    ("arch-2.csv", include_str!("../../../demos/arch/arch-2.csv")),
+    ("arch-3.csv", include_str!("../../../demos/arch/arch-3.csv")),
+    ("arch-4.csv", include_str!("../../../demos/arch/arch-4.csv")),
+    ("arch-5.csv", include_str!("../../../demos/arch/arch-5.csv")),
+    ("arch-6.csv", include_str!("../../../demos/arch/arch-6.csv")),
+    ("arch-7.csv", include_str!("../../../demos/arch/arch-7.csv")),
 ];
 /// What the paper calls them, and the files of the LASA set.
 const NAMES: [(&str, &str); 3] = [("S-shape", "Sshape.mat"), ("Angle", "Angle.mat"), ("Leaf", "Leaf_1.mat")];
@@ -144,7 +156,8 @@ impl Skills {
             None => own(*i, NAMES[*i].0),
         })?;
         let [s, angle, leaf] = <[Skill; 3]>::try_from(three).map_err(|_| Error::failed("there are three skills"))?;
-        Ok(Self { s, angle, leaf, recorded: own(1, "recorded")?, lasa: lasa.is_some() })
+        let (recorded, recordings) = (own(1, "recorded")?, recordings()?);
+        Ok(Self { s, angle, leaf, recorded, recordings, lasa: lasa.is_some() })
     }
 
     /// The three of the paper's first figure.
@@ -158,6 +171,16 @@ fn own(i: usize, name: &'static str) -> Result<Skill, Error> {
     let origin = format!("models/{file}.toml");
     let model = ModelFile::parse(&origin, text)?;
     Skill::new(name, origin, model, Vector2::new(x, y))
+}
+
+fn recordings() -> Result<Vec<Vec<Vector2<f64>>>, Error> {
+    let mut all = Vec::new();
+    for (name, text) in ARCH {
+        for d in learn::read::csv::read(name, text.as_bytes())? {
+            all.push(d.x.iter().map(|x| Vector2::from_fn(|i, _| x.get(i).copied().unwrap_or_default())).collect());
+        }
+    }
+    Ok(all)
 }
 
 fn learnt(folder: &Path, i: usize) -> Result<Skill, Error> {
@@ -183,6 +206,12 @@ mod tests {
     #[test]
     fn our_own_skills_have_paths_from_their_start_to_their_goal() {
         let skills = Skills::new(None, &|_| {}).unwrap();
+        assert_eq!(skills.recordings.len(), ARCH.len());
+        for demonstration in &skills.recordings {
+            // Each starts near where the motion is driven from, and ends at its goal.
+            let (first, last) = (demonstration.first().unwrap(), demonstration.last().unwrap());
+            assert!((first - skills.recorded.start).norm() < 0.05 && (last - skills.recorded.goal()).norm() < 0.02);
+        }
         for skill in skills.three().into_iter().chain([&skills.recorded]) {
             assert_eq!(skill.place(0.0).at, skill.start);
             assert!((skill.place(1.0).at - skill.goal()).norm() < 3.0 * STEP, "{}", skill.name);

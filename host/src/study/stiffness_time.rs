@@ -1,6 +1,7 @@
 //! The paper's Fig. 4a: how long it takes past an obstacle as its soft layer becomes thicker.
 //!
-//! The paper gives its lengths without a unit. Its S-shape fills an area of 4 x 4, and ours of 0.4 m x 0.4 m: one of its units is 0.1 m here.
+//! The paper gives its lengths without a unit. Its S-shape fills an area of 4 x 4, and ours one of about 0.4 m x 0.4 m: one of its units is 0.1 m
+//! here. (The path of our own is 0.38 m wide and 0.43 m high, that of LASA handwriting, a unit as a centimetre, 0.45 m and 0.45 m.)
 
 use nalgebra::Vector2;
 use serde_json::{Map, json};

@@ -18,8 +18,8 @@ use crate::scene::Scene;
 
 /// Starts of each motion: the one that was shown, and others drawn at random.
 pub const STARTS: usize = 25;
-/// How many of them a figure shows.
-const SHOWN: usize = 6;
+/// How wide their paths are drawn, px: there are many.
+const LINE: f64 = 1.2;
 /// How far beyond the path they are drawn, m.
 const AROUND: f64 = 0.05;
 
@@ -46,6 +46,19 @@ impl Runs {
     fn mean_time(&self) -> Option<f64> {
         let times: Vec<f64> = self.drives.iter().filter(|d| d.reached).map(Drive::time).collect();
         (!times.is_empty()).then(|| times.iter().sum::<f64>() / times.len() as f64)
+    }
+    fn tile<'a>(&'a self, trajectories: &'a [Trajectory]) -> Tile<'a> {
+        let ends = |of: &dyn Fn(&Drive) -> bool| {
+            let last = self.drives.iter().filter(|d| of(d)).filter_map(|d| d.steps.last());
+            last.map(|s| s.position.push(0.0)).collect()
+        };
+        let (entries, lost) = (ends(&Drive::touched), ends(&|d| !d.reached && !d.touched()));
+        Tile {
+            title: format!("{}, {}", self.skill, if self.obstacles == 1 { "one" } else { "two" }),
+            scene: &self.scene,
+            trajectories,
+            options: Options { speed: false, clearances: false, entries, lost, line: LINE, ..Options::default() },
+        }
     }
 }
 
@@ -136,7 +149,7 @@ pub fn study(skills: &Skills, seed: u64, done: &(dyn Fn(usize) + Sync)) -> Resul
     let mut figures = Vec::new();
     for (name, column) in [("trajectories", Column::Pliant), ("trajectories-letter", Column::ALL[0])] {
         let caption = format!(
-            "Motions past one deformable obstacle and through the overlap of two: {} (with streamlines of its flow, before any guard)",
+            "Motions past one deformable obstacle and through the overlap of two from {STARTS} places each: {} (with streamlines of its flow, before any guard)",
             column.title()
         );
         figures.push((name, caption, figure(&runs, column)?));
@@ -150,20 +163,7 @@ pub fn study(skills: &Skills, seed: u64, done: &(dyn Fn(usize) + Sync)) -> Resul
 fn figure(runs: &[Runs], column: Column) -> Result<crate::plot::Figure, Error> {
     let mut some: Vec<&Runs> = runs.iter().filter(|r| r.column == column).collect();
     some.sort_by_key(|r| r.obstacles);
-    let paths: Vec<Vec<Trajectory>> =
-        some.iter().map(|r| r.drives.iter().take(SHOWN).map(Drive::trajectory).collect()).collect();
-    // What is drawn starts where the paths do.
-    let scenes: Vec<Scene> = some.iter().map(|r| r.scene.with_first_starts(SHOWN)).collect();
-    let tiles: Vec<Tile<'_>> = some
-        .iter()
-        .zip(&scenes)
-        .zip(&paths)
-        .map(|((r, scene), trajectories)| Tile {
-            title: if r.obstacles == 1 { r.skill.into() } else { format!("{}, two", r.skill) },
-            scene,
-            trajectories,
-            options: Options { speed: false, clearances: false, ..Options::default() },
-        })
-        .collect();
+    let paths: Vec<Vec<Trajectory>> = some.iter().map(|r| r.drives.iter().map(Drive::trajectory).collect()).collect();
+    let tiles: Vec<Tile<'_>> = some.iter().zip(&paths).map(|(r, paths)| r.tile(paths)).collect();
     Ok(gallery(&tiles, 3, 560.0)?)
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use nalgebra::Vector2;
 
-use super::column::Column;
+use super::column::Way;
 use super::skill::Skill;
 use crate::error::Error;
 use crate::scene::Scene;
@@ -84,9 +84,9 @@ impl<'a> World<'a> {
     }
 
     /// The scene file; the model is in the folder `models` beside its own.
-    pub fn toml(&self, column: Column) -> String {
+    pub fn toml(&self, way: impl Into<Way>) -> String {
         let mut text =
-            format!("[ds]\nmodel = \"../models/{}.toml\"\n{}", self.skill.name.to_lowercase(), column.toml());
+            format!("[ds]\nmodel = \"../models/{}.toml\"\n{}", self.skill.name.to_lowercase(), way.into().toml());
         let _ = writeln!(text, "[limits]\nspeed = {SPEED:?}");
         let _ = writeln!(text, "[goal]\ntolerance = {:?}\ntimeout = {:?}", self.tolerance, self.timeout);
         for start in &self.starts {
@@ -100,15 +100,16 @@ impl<'a> World<'a> {
     ///
     /// # Errors
     /// What is wrong with it, as with any scene file.
-    pub fn scene(&self, name: &str, column: Column) -> Result<Scene, Error> {
+    pub fn scene(&self, name: &str, way: impl Into<Way>) -> Result<Scene, Error> {
         let name = format!("{name}.toml");
-        Ok(Scene::parse_with_model(&name, &self.toml(column), &self.skill.text)?)
+        Ok(Scene::parse_with_model(&name, &self.toml(way), &self.skill.text)?)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::column::Column;
     use crate::study::skill::Skills;
     use nalgebra::Vector3;
 
@@ -127,6 +128,8 @@ mod tests {
             let on = |far: f64| (center + out * far).push(0.0);
             assert!((o.gamma(&on(0.05)) - 1.0).abs() < 1e-9 && (o.gamma_soft(&on(0.075)) - 1.0).abs() < 1e-9);
             assert_eq!(scene.guard().is_some(), column == Column::Pliant);
+            let other = World::new(skill, vec![body.clone()]).scene("w", Way::other(column)).unwrap();
+            assert_eq!(other.guard().is_some(), column != Column::Pliant);
             assert_eq!(scene.starts(), [Vector3::new(skill.start.x, skill.start.y, 0.0)]);
         }
         let hard = body.hardened();

@@ -38,7 +38,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         return Err(Error::bad_input("--data DIR is missing: the folder of the motions").with_help(WHERE));
     };
     let task = Task { folder, unit: args.unit, seed: args.seed, held_out: args.held_out };
-    let _folder = findings::prepare(&args.out)?;
+    findings::check_writable(&args.out)?;
     let bar = progress::bar(json);
     let found = study(&task, &|what, done, of| {
         bar.set_message(format!("{what} {done} of {of}"));

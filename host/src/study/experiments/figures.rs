@@ -1,5 +1,7 @@
 //! The figures of the experiments, each with what the paper shows in its own.
 
+use nalgebra::Vector2;
+
 use super::outcome::{Outcome, intersection, soft};
 use super::spread::Spread;
 use crate::error::Error;
@@ -12,10 +14,12 @@ use crate::study::world::World;
 
 /// Width of a figure for one column of a page, px.
 const COLUMN: f64 = 500.0;
+/// How wide a path is drawn in a tile, px: in an intersection there is little room beside it.
+const LINE: f64 = 2.0;
 
 fn tile<'a>(outcome: &'a Outcome<'_>, trajectory: &'a [Trajectory], title: String) -> Tile<'a> {
     let reference = outcome.case.world.skill.path_in_space();
-    let options = Options { reference, clearances: false, ..Options::default() };
+    let options = Options { reference, clearances: false, line: LINE, ..Options::default() };
     Tile { title, scene: &outcome.scene, trajectories: trajectory, options }
 }
 
@@ -37,19 +41,20 @@ pub fn side_by_side(all: &[Outcome<'_>], ids: &[&str], columns: usize) -> Result
     Ok(gallery(&tiles, columns, COLUMN)?)
 }
 
-/// The recorded motion alone, and C1.
+/// The recorded motion alone with its demonstrations, and C1.
 ///
 /// # Errors
 /// None.
-pub fn complex(all: &[Outcome<'_>]) -> Result<Figure, Error> {
+pub fn complex(all: &[Outcome<'_>], recordings: &[Vec<Vector2<f64>>]) -> Result<Figure, Error> {
     let Some(c1) = all.iter().find(|o| o.case.id == "C1" && o.column == Column::Pliant) else {
         return Err(Error::failed("there is no C1"));
     };
     let alone = World::new(c1.case.world.skill, Vec::new()).scene("alone", Column::Pliant)?;
     let path = vec![c1.drive.trajectory()];
     let with = tile(c1, &path, "(b) five obstacles".into());
-    let without =
-        Tile { title: "(a) the motion".into(), scene: &alone, trajectories: &[], options: with.options.clone() };
+    let demonstrations = recordings.iter().map(|r| r.iter().map(|x| x.push(0.0)).collect()).collect();
+    let options = Options { demonstrations, ..with.options.clone() };
+    let without = Tile { title: "(a) demonstrations, motion".into(), scene: &alone, trajectories: &[], options };
     Ok(gallery(&[without, with], 2, 560.0)?)
 }
 

@@ -101,7 +101,7 @@ pub fn study(
             "Speeds where the paper compares them, from when the robot comes there".into(),
             figures::velocities(&all),
         ),
-        ("experiment-c", caption("C1", "five obstacles"), figures::complex(&all)?),
+        ("experiment-c", caption("C1", "five obstacles"), figures::complex(&all, &skills.recordings)?),
         (
             "speed-spread",
             "The two claims for obstacles at other places on the path".into(),
@@ -208,9 +208,6 @@ fn verdicts(skills: &Skills, all: &[Outcome<'_>], places: &Spread, on_device: &[
     let millimetres = |x: Option<f64>| number(x.map(|x| x * 1e3), 1);
     let well = all.iter().filter(|o| !matches!(o.column, Column::Letter(_)));
     let (well, count) = well.fold((0, 0), |(well, count), o| (well + usize::from(o.is_well()), count + 1));
-    let faster = places.soft.iter().filter(|x| **x > 0.0).count();
-    let slower = places.intersection.iter().filter(|x| **x < 0.0).count();
-    let range = |all: &[f64]| format!("{} to {} %", signed(all.first().copied(), 1), signed(all.last().copied(), 1));
     let mut out = vec![
         Verdict {
             claim: format!("A1 against A3: mean speed in the soft region, within {TOLERANCE} points"),
@@ -244,23 +241,7 @@ fn verdicts(skills: &Skills, all: &[Outcome<'_>], places: &Spread, on_device: &[
             holds: off("A1").zip(off("A2")).map(|(a1, a2)| a1 < a2),
             vital: false,
         },
-        Verdict {
-            claim: "faster in a soft layer, slower in an intersection, wherever the obstacles are".into(),
-            paper: "-".into(),
-            measured: format!(
-                "faster at {faster} of {} places ({}), slower at {slower} of {} ({}); at {} more a path does not meet what is compared; at {} the original never arrives, and at {} of these neither does the default",
-                places.soft.len(),
-                range(&places.soft),
-                places.intersection.len(),
-                range(&places.intersection),
-                places.unmet,
-                places.void.0,
-                places.void.1
-            ),
-            holds: (!places.soft.is_empty() || !places.intersection.is_empty())
-                .then_some((faster, slower, places.failed) == (places.soft.len(), places.intersection.len(), 0)),
-            vital: false,
-        },
+        places.verdict(),
     ];
     out.extend(on_device.iter().map(|c| Verdict {
         claim: format!("{} on {}: the bits of the virtual device", c.id, c.device),

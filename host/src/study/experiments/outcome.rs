@@ -9,6 +9,9 @@ use crate::study::column::Column;
 use crate::study::drive::{Drive, Driving, Robot, Step, drive};
 use crate::study::measure;
 
+/// How robots follow in experiments.
+const ROBOT: Robot = Robot::Lagging;
+
 /// A run of an experiment.
 #[derive(Clone, Debug)]
 pub struct Outcome<'a> {
@@ -39,7 +42,7 @@ impl<'a> Outcome<'a> {
     /// None for the experiments as they are.
     pub fn of(case: &'a Case<'a>, column: Column) -> Result<Self, Error> {
         let scene = case.world.scene(case.id, column)?;
-        let driving = Driving { perception: case.perception, ..Driving::of(Robot::Lagging) };
+        let driving = Driving { perception: case.perception, ..Driving::of(ROBOT) };
         let drive = drive(&scene, &case.world.skill.start, &driving, None)?;
         Ok(Self { case, column, scene, drive })
     }
@@ -78,8 +81,8 @@ impl<'a> Outcome<'a> {
             "mean_speed_intersection": self.intersection_speed(),
             "mean_deviation_m": mean,
             "max_deviation_m": most,
-            "rms_jerk": measure::jerk(&self.drive),
-            "largest_velocity_jump": measure::largest_jump(&self.drive),
+            "rms_jerk": measure::jerk(&self.drive, ROBOT.ramp()),
+            "largest_velocity_jump": measure::largest_jump(&self.drive, ROBOT.ramp()),
             "guarded_share": measure::guarded(&self.drive),
         })
     }

@@ -5,9 +5,11 @@ use super::outcome::{intersection, soft};
 use crate::error::Error;
 use crate::study::column::Column;
 use crate::study::drive::{Driving, Robot, Step, drive};
+use crate::study::findings::Verdict;
 use crate::study::measure::{change_percent, mean_speed, sorted};
 use crate::study::parallel;
 use crate::study::skill::Skill;
+use crate::study::table::signed;
 use crate::study::world::{Body, World};
 
 /// How much faster (in percent) robots are than by the original method, each by the place of the obstacles.
@@ -70,6 +72,33 @@ pub fn spread(skill: &Skill, done: &(dyn Fn(usize) + Sync)) -> Result<Spread, Er
     })
 }
 
+impl Spread {
+    /// Is the sign of both claims the same at every place?
+    pub fn verdict(&self) -> Verdict {
+        let faster = self.soft.iter().filter(|x| **x > 0.0).count();
+        let slower = self.intersection.iter().filter(|x| **x < 0.0).count();
+        let range =
+            |all: &[f64]| format!("{} to {} %", signed(all.first().copied(), 1), signed(all.last().copied(), 1));
+        Verdict {
+            claim: "faster in a soft layer, slower in an intersection, wherever the obstacles are".into(),
+            paper: "-".into(),
+            measured: format!(
+                "faster at {faster} of {} places ({}), slower at {slower} of {} ({}); at {} more a path does not meet what is compared; at {} the original never arrives, and at {} of these neither does the default",
+                self.soft.len(),
+                range(&self.soft),
+                self.intersection.len(),
+                range(&self.intersection),
+                self.unmet,
+                self.void.0,
+                self.void.1
+            ),
+            holds: (!self.soft.is_empty() || !self.intersection.is_empty())
+                .then_some((faster, slower, self.failed) == (self.soft.len(), self.intersection.len(), 0)),
+            vital: false,
+        }
+    }
+}
+
 /// What came of a place.
 struct Place {
     single: bool,
@@ -78,4 +107,29 @@ struct Place {
     /// Did the original method arrive, and touch nothing?
     comparable: bool,
     change: Option<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_place_with_the_other_sign_is_enough_to_fail() {
+        let spread = |soft: &[f64], intersection: &[f64]| Spread {
+            soft: soft.to_vec(),
+            intersection: intersection.to_vec(),
+            ..Spread::default()
+        };
+        let holds = |soft: &[f64], intersection: &[f64]| spread(soft, intersection).verdict().holds;
+        assert_eq!(holds(&[0.1, 9.0], &[-9.0, -0.1]), Some(true));
+        assert_eq!(holds(&[-0.1, 9.0], &[-9.0, -0.1]), Some(false), "slower in a soft layer");
+        assert_eq!(holds(&[0.1, 9.0], &[-9.0, 0.1]), Some(false), "faster in an intersection");
+        assert_eq!(holds(&[-9.0, -0.1], &[0.1, 9.0]), Some(false), "both the wrong way round");
+        assert_eq!(holds(&[0.0], &[-1.0]), Some(false), "no change is no gain");
+        assert_eq!(holds(&[], &[-1.0]), Some(true));
+        assert_eq!(holds(&[], &[]), None);
+        assert_eq!(Spread { failed: 1, ..spread(&[1.0], &[-1.0]) }.verdict().holds, Some(false), "a core, or no goal");
+        let says = spread(&[-0.1, 9.0], &[-9.0, 0.1]).verdict().measured;
+        assert!(says.contains("faster at 1 of 2 places (-0.1 to +9.0 %), slower at 1 of 2 (-9.0 to +0.1 %)"), "{says}");
+    }
 }

@@ -6,7 +6,7 @@ use crate::plot::chart::{Chart, Colour, Mark, Series, charts};
 use crate::study::column::{Column, THETA};
 use crate::study::drive::{Driving, Robot, drive};
 use crate::study::experiments::cases::one;
-use crate::study::measure::{change_percent, mean_speed};
+use crate::study::measure::{change_percent, mean_speed, quantile, sorted};
 use crate::study::parallel;
 use crate::study::skill::Skill;
 use crate::study::table::{Table, signed, yes};
@@ -32,7 +32,7 @@ pub struct Angle {
 
 /// Every angle, on both sides.
 pub fn study(skill: &Skill, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<Angle>, Error> {
-    let angles = (-180 / STEP..180 / STEP).map(|i| Some(i * STEP)).chain([None]);
+    let angles = (-180 / STEP..=180 / STEP).map(|i| Some(i * STEP)).chain([None]);
     let all: Vec<(Option<i32>, bool)> = angles.flat_map(|a| [(a, true), (a, false)]).collect();
     parallel::map(&all, done, |(degrees, left)| {
         let world =
@@ -85,6 +85,14 @@ pub fn figure(all: &[Angle]) -> Figure {
         let (lowest, highest) = (changes().fold(0.0, f64::min) - 5.0, changes().fold(0.0, f64::max) + 5.0);
         let chosen = f64::from(THETA.to_degrees().round() as i32);
         let dashed = |name: &str, colour, points| Series { mark: Mark::Dashed, ..Series::line(name, colour, points) };
+        let letter = pieces(&points(false)).into_iter().map(|p| Series::line("paper to the letter", Colour::Letter, p));
+        let failed = Series {
+            mark: Mark::Dots,
+            ..Series::line("never arrived, or entered the core", Colour::Letter, points(true))
+        };
+        let mut series = vec![Series::line("Pliant's default: with the flow", Colour::Pliant, level)];
+        series.extend(letter);
+        series.push(failed);
         Chart {
             title: title.into(),
             x: "theta_2 (degrees)".into(),
@@ -93,18 +101,34 @@ pub fn figure(all: &[Angle]) -> Figure {
                 dashed(Column::Original.title(), Colour::Original, vec![(-180.0, 0.0), (180.0, 0.0)]),
                 dashed("theta_2 of the other studies", Colour::Reference, vec![(chosen, lowest), (chosen, highest)]),
             ],
-            series: vec![
-                Series::line("Pliant's default: with the flow", Colour::Pliant, level),
-                Series::line("paper to the letter", Colour::Letter, points(false)),
-                Series {
-                    mark: Mark::Dots,
-                    ..Series::line("never arrived, or entered the core", Colour::Letter, points(true))
-                },
-            ],
+            series,
             x_range: Some((-180.0, 180.0)),
             y_range: Some((lowest, highest)),
             ..Chart::default()
         }
     };
     charts(&[chart("obstacle to the left", true), chart("obstacle to the right", false)], 2, 500.0)
+}
+
+/// A curve in pieces, broken where it jumps: where the step from one point to the next is many times the median of all.
+fn pieces(points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
+    const MANY: f64 = 5.0;
+    let step = |a: &(f64, f64), b: &(f64, f64)| (b.1 - a.1).abs();
+    let steps = sorted(points.windows(2).map(|w| step(&w[0], &w[1])));
+    let most = MANY * quantile(&steps, 0.5).unwrap_or_default();
+    points.chunk_by(|a, b| step(a, b) <= most).map(<[_]>::to_vec).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_curve_is_broken_where_it_jumps_alone() {
+        let saw: Vec<(f64, f64)> = (0..30).map(|i| (f64::from(i), f64::from(i % 10) * 2.0)).collect();
+        let lengths = |points: &[(f64, f64)]| pieces(points).iter().map(Vec::len).collect::<Vec<_>>();
+        assert_eq!(lengths(&saw), [10, 10, 10]);
+        assert_eq!(pieces(&saw).concat(), saw);
+        assert_eq!((lengths(&saw[..10]), lengths(&saw[..1]), lengths(&[])), (vec![10], vec![1], vec![]));
+    }
 }

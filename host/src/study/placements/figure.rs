@@ -1,6 +1,7 @@
 //! Distributions over runs.
 
-use super::{Passed, QUANTITIES, values};
+use super::run::Passed;
+use super::{QUANTITIES, values};
 use crate::plot::Figure;
 use crate::plot::chart::{Chart, Colour, Series, charts};
 use crate::study::column::Column;
@@ -11,7 +12,7 @@ const COLOURS: [Colour; 3] = [Colour::Letter, Colour::Pliant, Colour::Original];
 /// One chart a quantity, each with the share of runs that have no more of it; the outermost hundredths are cut off.
 pub fn distributions(all: &[Passed]) -> Figure {
     let chart = |q: &super::Quantity| {
-        let each: Vec<Vec<f64>> = (0..3).map(|c| values(all, |p| (q.of)(p, c))).collect();
+        let each: Vec<Vec<f64>> = (0..3).map(|c| values(all, |p| (q.of)(p, &p.runs[c]))).collect();
         let ends = |share: f64| each.iter().filter_map(move |v| quantile(v, share));
         let (low, high) = (ends(0.01).fold(f64::INFINITY, f64::min), ends(0.99).fold(f64::NEG_INFINITY, f64::max));
         let room = (high - low).max(1e-9) * 0.04;
