@@ -24,7 +24,7 @@ pub use spec::{MAX_RATIO, MAX_SPEED, MIN_AXIS, ObstacleError, ObstacleSpec};
 pub(crate) use abreast::Abreast;
 pub(crate) use sample::{Sample, SoftLayer};
 
-use crate::shape::{Body, Place, root};
+use crate::shape::{Body, Pieces, Place, Shape, root};
 use crate::{Matrix, Scalar, Vector, norm, times, transposed_times};
 
 /// A checked obstacle, at its present pose and size.
@@ -272,29 +272,73 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         }
     }
 
-    /// 1/(eta L), with growth and ageing, along the axes of the obstacle's frame, 1/m: of an ellipsoid 1/a.
-    pub(crate) fn inverse_axes(&self) -> &Vector<S, D> {
-        &self.hard
-    }
-
     /// All of the hard core lies within this of the centre, m.
     pub(crate) fn outer(&self) -> S {
-        let largest =
-            self.unit.iter().zip(self.hard.iter()).fold(S::zero(), |m, (l, hard)| m.max(S::one() / (*l * *hard)));
-        self.spec.shape.outer() * largest
+        let least = self.unit.iter().zip(self.hard.iter()).fold(S::MAX, |m, (l, hard)| m.min(*l * *hard));
+        self.spec.shape.outer() / least
     }
 
-    /// The largest n.(x - c) of all x in the hard core, or somewhat more, m, for n of unit length.
-    pub(crate) fn support(&self, n: &Vector<S, D>) -> S {
-        let w = transposed_times(&self.spec.rotation, n).component_div(&self.hard);
-        self.body.support(&self.spec.shape, &w)
+    /// B, of an ellipsoid c + B y, |y| <= 1, that holds the hard core, m.
+    pub(crate) fn ellipsoid_around(&self) -> Matrix<S, D> {
+        let half = self.box_around();
+        // Round a box it is larger than the box by the root of D.
+        let larger = if self.body.is_ellipsoid() {
+            1.0
+        } else if D == 2 {
+            core::f64::consts::SQRT_2
+        } else {
+            1.732_050_807_568_877_2
+        };
+        let larger = S::from_f64(larger);
+        Matrix::from_fn(|i, j| self.spec.rotation[(i, j)] * (half[j] * larger))
+    }
+
+    /// Half of the box along its axes that holds the hard core, m.
+    fn box_around(&self) -> Vector<S, D> {
+        self.spec.shape.extent().component_div(&self.unit.component_mul(&self.hard))
     }
 
     /// A corner of the box along its axes that holds the hard core, m: bit i of n says on which side along axis i.
     pub(crate) fn corner(&self, n: usize) -> Vector<S, D> {
-        let half = self.spec.shape.extent().component_div(&self.unit.component_mul(&self.hard));
+        let half = self.box_around();
         let corner = Vector::from_fn(|i, _| if n >> i & 1 == 0 { half[i] } else { -half[i] });
         self.spec.center + times(&self.spec.rotation, &corner)
+    }
+
+    /// The n-th corner of a polygon, or of the box that holds any other, m.
+    pub(crate) fn extreme(&self, n: usize) -> Option<Vector<S, D>> {
+        match &self.spec.shape {
+            Shape::Polygon(polygon) if n < polygon.vertices().len() => Some(self.spec.center + self.to_corner(n)?),
+            Shape::Polygon(_) => None,
+            _ => (n < 1 << D).then(|| self.corner(n)),
+        }
+    }
+
+    /// Of its hard core the point farthest along n (world's frame, any length), m.
+    pub(crate) fn farthest(&self, n: &Vector<S, D>) -> Vector<S, D> {
+        // Over the longest axis: only the direction counts.
+        let most = self.hard.iter().fold(S::MAX, |m, x| m.min(*x));
+        let w = transposed_times(&self.spec.rotation, n).zip_map(&self.hard, |n, hard| n * (most / hard));
+        let u = self.body.farthest(&self.spec.shape, &w);
+        self.spec.center + times(&self.spec.rotation, &u.component_div(&self.hard))
+    }
+
+    /// From the centre to a polygon's i-th corner, counted on round it; m.
+    pub(crate) fn to_corner(&self, i: usize) -> Option<Vector<S, D>> {
+        let Shape::Polygon(polygon) = &self.spec.shape else { return None };
+        let all = polygon.vertices().len();
+        let mut i = i;
+        while i >= all && all > 0 {
+            i -= all;
+        }
+        let v = polygon.vertices().get(i)?;
+        let q = Vector::<S, D>::from_fn(|i, _| v.get(i).copied().unwrap_or_else(S::zero));
+        Some(times(&self.spec.rotation, &q.component_div(&self.unit.component_mul(&self.hard))))
+    }
+
+    /// A polygon's convex pieces, of a wall those of what is outside.
+    pub(crate) fn pieces(&self) -> Option<&Pieces> {
+        self.body.pieces()
     }
 
     /// p: Gamma is the gauge to the power of 2p.

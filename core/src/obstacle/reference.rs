@@ -1,6 +1,7 @@
 //! Where an obstacle's reference point is.
 
 use super::Obstacle;
+use crate::shape::root;
 use crate::{Scalar, Vector, is_zero, times, transposed_times};
 
 /// The share of n.r that is left where r leads from nearer to the root of a tree.
@@ -12,20 +13,19 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.spec.center + self.offset
     }
 
-    /// Below 1 where its reference point may be (not a wall's): Gamma, but of a polygon by what is seen from there. And where it grows, for
-    /// [`Obstacle::outward`].
-    pub(crate) fn sight(&self, x: &Vector<S, D>) -> (S, Vector<S, D>) {
-        self.body.sight(&self.spec.shape, &self.scaled(x))
-    }
-
-    /// Gamma, and where it grows, likewise.
-    pub(crate) fn look(&self, x: &Vector<S, D>) -> (S, Vector<S, D>) {
-        let (gamma, direction) = self.level(&self.scaled(x));
-        (gamma, if self.spec.wall { -direction } else { direction })
+    /// The gauge |q|/R(q) of the shape, of a wall's too, at any distance, and its normal there, of any length; both zero at the centre.
+    pub(crate) fn gauge(&self, x: &Vector<S, D>) -> (S, Vector<S, D>) {
+        let u = self.scaled(x);
+        let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
+        if !(largest > S::zero()) {
+            return (S::zero(), Vector::zeros());
+        }
+        let (gamma, direction) = self.body.level(&self.spec.shape, &(u / largest));
+        (largest * root(gamma, self.body.power()), self.outward(&direction))
     }
 
     /// A direction of scaled coordinates, as a normal in the world's frame, of any length.
-    pub(crate) fn outward(&self, direction: &Vector<S, D>) -> Vector<S, D> {
+    fn outward(&self, direction: &Vector<S, D>) -> Vector<S, D> {
         // Scaled by one over the shortest axis a normal could leave the range.
         let most = self.hard.iter().fold(S::zero(), |m, x| m.max(*x));
         times(&self.spec.rotation, &direction.zip_map(&self.hard, |d, hard| d * (hard / most)))

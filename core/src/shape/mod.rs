@@ -19,7 +19,7 @@ mod tests;
 pub use polygon::{MAX_VERTICES, Polygon};
 
 use crate::{ObstacleError, RANGE, Scalar, Vector};
-use polygon::Pieces;
+pub(crate) use polygon::{Pieces, SIGHT};
 use rounded::Rounded;
 use superellipsoid::Superellipsoid;
 pub(crate) use superellipsoid::root;
@@ -255,14 +255,19 @@ impl<S: Scalar, const D: usize> Body<S, D> {
         }
     }
 
-    /// The largest w.u of all u inside, or somewhat more.
-    pub fn support(&self, shape: &Shape<S, D>, w: &Vector<S, D>) -> S {
+    /// Of all u inside the one with the largest w.u.
+    pub fn farthest(&self, shape: &Shape<S, D>, w: &Vector<S, D>) -> Vector<S, D> {
         match (self, shape) {
-            (Self::Superellipsoid(body), _) => body.support(w),
-            (Self::Rounded(body), _) => body.support(w),
-            (Self::Polygon { scale, .. }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).support(w),
-            _ => S::MAX,
+            (Self::Superellipsoid(body), _) => body.farthest(w),
+            (Self::Rounded(body), _) => body.farthest(w),
+            (Self::Polygon { scale, .. }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).farthest(w),
+            _ => Vector::zeros(),
         }
+    }
+
+    /// A polygon's convex pieces, of a wall those of what is outside.
+    pub fn pieces(&self) -> Option<&Pieces> {
+        if let Self::Polygon { pieces, .. } = self { Some(pieces) } else { None }
     }
 
     /// Half-spaces that keep a point out of the body, or inside it as a wall; see [`Surface::keep_out`].

@@ -85,9 +85,20 @@ impl<S: Scalar, const D: usize> Rounded<S, D> {
         Gauge { lambda, gradient }
     }
 
-    /// The largest w.u of all u inside.
-    pub fn support(&self, w: &Vector<S, D>) -> S {
-        self.distances(w).component_mul(&self.half).iter().fold(S::norm(w.as_slice()) * self.radius, |sum, h| sum + *h)
+    /// Of all u inside the one with the largest w.u.
+    pub fn farthest(&self, w: &Vector<S, D>) -> Vector<S, D> {
+        let (_, n) = unit(w);
+        let (across, along) = unit(&Vector::<S, D>::from_fn(|i, _| if i < 2 { n[i] } else { S::zero() }));
+        Vector::from_fn(|i, _| {
+            let corner = if self.turned && i < 2 {
+                if across > S::zero() { along[i] * self.half[0] } else { S::zero() }
+            } else if n[i] < S::zero() {
+                -self.half[i]
+            } else {
+                self.half[i]
+            };
+            corner + n[i] * self.radius
+        })
     }
 
     /// Radius of the largest ball inside.

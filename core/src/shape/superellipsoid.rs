@@ -21,17 +21,23 @@ impl Superellipsoid {
         let p = self.powers::<S>();
         S::from_f64(1.2) * p * (p + p - S::one()) * stride * stride
     }
+}
 
-    /// The largest w.u of all u inside, or somewhat more: as for the ball and the box that hold it.
-    pub fn support<S: Scalar, const D: usize>(&self, w: &Vector<S, D>) -> S {
-        let length = S::norm(w.as_slice());
-        if self.p == 1 {
-            return length;
+impl Superellipsoid {
+    /// Of all u inside the one with the largest w.u: u_i is as |w_i|^(1/(2p - 1)).
+    pub fn farthest<S: Scalar, const D: usize>(&self, w: &Vector<S, D>) -> Vector<S, D> {
+        let largest = w.iter().fold(S::zero(), |m, w| m.max(w.abs()));
+        if !(largest > S::zero()) {
+            return Vector::zeros();
         }
-        // |u|_2 <= d^(1/2 - 1/2p) where |u|_2p <= 1.
-        let d = w.iter().fold(S::zero(), |d, _| d + S::one());
-        let ball = length * (d.sqrt() / root(d, self.p));
-        ball.min(w.iter().fold(S::zero(), |sum, w| sum + w.abs()))
+        let power = self.p + self.p - 1;
+        let u = w.map(|w| {
+            let share = w / largest;
+            let u = root(share * share, power);
+            if w < S::zero() { -u } else { u }
+        });
+        let gamma = u.iter().fold(S::zero(), |sum, u| sum + (*u * *u).powi(self.p));
+        u / root(gamma, self.p)
     }
 }
 

@@ -138,7 +138,41 @@ fn gap<S: Scalar, const D: usize>(o: &Obstacle<S, D>, x: &Vector<S, D>) -> S {
     gap
 }
 
+/// No point of the surface is farther along n than the farthest.
+fn farthest<const D: usize>(shape: Shape<f64, D>, n: [f64; D], ways: &[[f64; D]]) -> Result<(), TestCaseError> {
+    let turn = Matrix::<f64, D>::from_fn(|i, j| match (i, j) {
+        (0, 0) | (1, 1) => 0.6,
+        (0, 1) => -0.8,
+        (1, 0) => 0.8,
+        _ => f64::from(u8::from(i == j)),
+    });
+    let o = Obstacle::new(ObstacleSpec { shape, rotation: turn, ..ObstacleSpec::default() }).unwrap();
+    let n = unit(n);
+    let most = o.farthest(&n);
+    prop_assert!((o.gamma(&most) - 1.0).abs() < 1e-6, "Gamma {} at {most}", o.gamma(&most));
+    for way in ways {
+        let x = o.surface(&unit(*way));
+        prop_assert!(n.dot(&(x - most)) < 1e-9, "{x} is farther than {most} along {n}");
+    }
+    Ok(())
+}
+
 proptest! {
+    #[test]
+    fn nothing_of_a_flat_body_is_farther_than_the_farthest(
+        shape in flat(), n in [-1.0..1.0f64, -1.0..1.0], ways in prop::collection::vec([-1.0..1.0f64, -1.0..1.0], 200)
+    ) {
+        farthest(shape, n, &ways)?;
+    }
+
+    #[test]
+    fn nothing_of_a_spatial_body_is_farther_than_the_farthest(
+        shape in spatial(), n in [-1.0..1.0f64, -1.0..1.0, -1.0..1.0],
+        ways in prop::collection::vec([-1.0..1.0f64, -1.0..1.0, -1.0..1.0], 200)
+    ) {
+        farthest(shape, n, &ways)?;
+    }
+
     /// Half of the guard's skin is more than rounding makes of the distance from a body, however sharp its edges or thin it is.
     #[test]
     fn sharp_edges_and_thin_bodies_keep_their_distances(

@@ -15,7 +15,7 @@ const BLEND: f64 = 0.2;
 /// By how much of the neighbour's gauge along that share it may fall at most: the further the neighbour turns away, the shorter the share.
 const FALL: f64 = 0.8;
 /// A reference point is behind every edge's line by at least a fifth of the origin's distance from it. FALL/8, what the blend may take of that, is less.
-const SIGHT: f64 = 0.8;
+pub(crate) const SIGHT: f64 = 0.8;
 
 /// A polygon, star-shaped about the origin: [`Polygon::new`] checks the number of corners, an obstacle the rest.
 ///
@@ -141,10 +141,12 @@ impl<S: Scalar> Scaled<'_, S> {
         Pieces::new(self.edges(), wall)
     }
 
-    /// The largest w.u of all u inside.
-    pub fn support<const D: usize>(&self, w: &Vector<S, D>) -> S {
+    /// The corner with the largest w.u.
+    pub fn farthest<const D: usize>(&self, w: &Vector<S, D>) -> Vector<S, D> {
         let w = plane(w);
-        self.vertices.iter().fold(S::zero(), |most, v| most.max(dot(*v, w))) * self.scale
+        let corners = self.vertices.iter().map(|v| (dot(*v, w), v));
+        let most = corners.reduce(|most, v| if v.0 > most.0 { v } else { most });
+        most.map_or_else(Vector::zeros, |(_, v)| vector(v.map(|x| x * self.scale)))
     }
 
     /// The distance of the nearest edge's line from the origin.

@@ -43,6 +43,16 @@ impl Pieces {
         Self { all }
     }
 
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.all.len()
+    }
+
+    /// The edges of the i-th, as the first and how many; each ends at the polygon's corner of its own number, and they are counted on round it.
+    pub fn edges(&self, i: usize) -> Option<(usize, usize)> {
+        self.all.get(i).map(|piece| (usize::from(piece.edges.first), usize::from(piece.edges.count)))
+    }
+
     pub(super) fn iter(&self) -> impl Iterator<Item = &Piece> {
         self.all.iter()
     }

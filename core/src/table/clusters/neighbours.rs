@@ -2,7 +2,7 @@
 
 use super::{Entry, moved, places};
 use crate::Scalar;
-use crate::overlap::{self, Depth, Inside};
+use crate::overlap;
 
 /// Bit j of the i-th: did i and j overlap when one of them last changed?
 #[derive(Clone, Debug)]
@@ -54,6 +54,5 @@ impl<const CAP: usize> Neighbours<CAP> {
 fn overlap<S: Scalar, const D: usize>(one: &Entry<S, D>, other: &Entry<S, D>) -> bool {
     // Rounding may tell which is the first.
     let (a, b) = if one.id < other.id { (one, other) } else { (other, one) };
-    let (a, b) = (&a.obstacle, &b.obstacle);
-    overlap::are_near(a, b) && overlap::between(Inside::Core(a), Inside::Core(b), Depth::Any).is_some()
+    overlap::overlap(&a.obstacle, &b.obstacle)
 }

@@ -6,13 +6,8 @@
 
 use super::neighbours::Neighbours;
 use super::{Entry, is_polygon, least_id, places, share};
-use crate::overlap::{self, Depth, Inside};
+use crate::overlap::Sight;
 use crate::{Scalar, Vector};
-
-/// Halvings of the way from an overlap to the parent's reference point.
-const HALVINGS: u8 = 11;
-/// Gamma of the child up to which its reference point goes, and from which on no further is searched.
-const DEEPEST: (f64, f64) = (0.8, 0.76);
 
 /// Finds the reference points of a cluster, from its roots outwards.
 pub(super) fn refer<S: Scalar, const D: usize, const CAP: usize>(
@@ -30,10 +25,10 @@ pub(super) fn refer<S: Scalar, const D: usize, const CAP: usize>(
     let (mut reached, mut front) = (roots, roots);
     while front != 0 {
         let mut next = 0;
-        while reached != cluster
-            && let Some(parent) = least_id(front, entries)
-        {
-            front &= !(1 << parent);
+        // Only those that have children are put in order.
+        let has_children = |i: &usize, reached: u64| neighbours.of(*i) & !reached != 0;
+        let parents = |reached: u64| places(front).filter(|i| has_children(i, reached)).fold(0, |all, i| all | 1 << i);
+        while let Some(parent) = least_id(parents(reached), entries) {
             let children = neighbours.of(parent) & !reached;
             (reached, next) = (reached | children, next | children);
             for child in places(children) {
@@ -68,37 +63,14 @@ fn towards_parent<S: Scalar, const D: usize>(
     parent: usize,
     child: usize,
 ) -> Option<Vector<S, D>> {
-    let (parent, child) = (entries.get(parent)?, entries.get(child)?);
-    let parent_first = parent.id < child.id;
-    let (parent, child) = (&parent.obstacle, &child.obstacle);
-    if !overlap::are_near(parent, child) {
-        // They have moved apart since they were compared.
-        return None;
+    let (parent, child) = (&entries.get(parent)?.obstacle, &entries.get(child)?.obstacle);
+    let (sight, end) = (Sight::of(child), parent.reference());
+    if parent.spec().wall {
+        return sight.meets(parent);
     }
-    let (deepest, enough) = (S::from_f64(DEEPEST.0), S::from_f64(DEEPEST.1));
-    let end = parent.reference();
-    if !parent.spec().wall && child.sight(&end).0 <= deepest && parent.gamma(&end) < S::one() {
+    if sight.reaches(&end) && parent.gamma(&end) < S::one() {
         // As far as it may go: from wherever they overlap, there.
         return Some(end);
     }
-    let (of_parent, of_child) = (Inside::Core(parent), Inside::Sight(child));
-    let (a, b) = if parent_first { (of_parent, of_child) } else { (of_child, of_parent) };
-    let point = overlap::between(a, b, Depth::Ample)?;
-    if parent.spec().wall {
-        return Some(point);
-    }
-    let way = end - point;
-    let (mut share, mut step) = (S::zero(), S::from_f64(0.5));
-    for _ in 0..HALVINGS {
-        let further = share + step;
-        let level = child.sight(&(point + way * further)).0;
-        if level <= deepest {
-            share = further;
-            if level > enough {
-                break;
-            }
-        }
-        step *= S::from_f64(0.5);
-    }
-    Some(point + way * share)
+    sight.meets(parent).map(|point| sight.drawn(&point, &end))
 }
