@@ -36,7 +36,7 @@
 //!
 //! **No split.** Where g.r (of a wall -g.r) <= 1e-6 |g|_1 |r|_1 (sums of absolute values), the reference point sees the surface edgewise or from
 //! behind, or x is the centre. Then xdot_n = s, and the tick says
-//! [`Status::REFERENCE`](crate::Status::REFERENCE). An obstacle whose Gamma reaches [`Scalar::FAR`](crate::Scalar::FAR) would not change a digit
+//! [`Status::REFERENCE`](crate::Status::REFERENCE). An obstacle whose Gamma reaches [`Scalar::FAR`] would not change a digit
 //! and is left out.
 //!
 //! # Obstacles that move

@@ -1,13 +1,45 @@
 //! One obstacle: a hard core, perhaps in a soft layer, that moves.
 //!
+//! # Gamma
+//!
 //! ```text
 //! Gamma(x)   = gamma(q_i / (eta_i L_i))    <= 1: hard
 //! Gamma_k(x) = gamma(q_i / (rho_i L_i))    <= 1: soft, where not hard        q = Q' (x - c)
 //! ```
 //!
-//! with gamma and the lengths L from the [`shape`](crate::shape): for an ellipsoid Gamma = sum_i |q_i / (eta_i a_i)|^2p, after
+//! Both are dimensionless; x and c in m, in the world's frame; q in m, in the obstacle's. gamma and the lengths L (m) are from the
+//! [`shape`](crate::shape): for an ellipsoid Gamma = sum_i |q_i / (eta_i a_i)|^2p, after
 //! Khansari-Zadeh & Billard (2012) with the safety factors eta inside, so that the inflated surface is the one that cannot be penetrated.
-//! Gamma_k is eq. 13 of Chen et al., with ln k + 1 = rho. A wall has 1/gamma, and both its surfaces come inwards: L_i/eta_i, L_i/rho_i.
+//! Gamma_k is eq. 13 of Chen et al., with ln k + 1 = rho; eta does not scale it, and where eta >= rho there is no soft layer: margin wins over softness.
+//! A wall has 1/gamma, and both its surfaces come inwards: L_i/eta_i, L_i/rho_i.
+//!
+//! # Growth and ageing
+//!
+//! Each semi-extent e_i of the shape (semi-axes, half sides, radius, half length with the radius; of a polygon, for both axes, the distance of its nearest edge
+//! from the origin) has by now grown by `grown`, the growth rate times the time. Ageing (see [`Ageing`](crate::Ageing)) has added `aged` to the
+//! hard core alone:
+//!
+//! ```text
+//! Gamma:    eta_i becomes eta_i (1 + grown/e_i) + aged/e_i         wall: 1/eta_i becomes (1 + grown/e_i)/eta_i - aged/e_i
+//! Gamma_k:  rho_i becomes rho_i (1 + grown/e_i)                    wall: 1/rho_i becomes (1 + grown/e_i)/rho_i
+//! ```
+//!
+//! No semi-extent shrinks below [`Scalar::MIN_AXIS`], no wall's scale by ageing below a tenth. Of a core smaller than as given
+//! the reference point is nearer to the centre in proportion.
+//!
+//! # Motion
+//!
+//! ```text
+//! c <- c + v dt,   Q <- Q turned by w dt           between sightings, each tick
+//! s(x) = v + w x (x - c) + b n,   n = g/|g|        surface velocity at x, m/s
+//! ```
+//!
+//! b (m/s, along n, positive towards free space) is how fast the surface moves because the core grows or ages, never less towards free space than it
+//! really does: where the rate brings the surface there, rate times eta_max times 1 for an ellipsoid with p = 1, sqrt(d) for other shapes, and for a polygon the
+//! length of the vector of its largest |coordinates| over e; where it retreats, rate times min e/max e. (Of a wall eta counts as 1 where it comes, and divides
+//! where it retreats.) Ageing always comes, and eta does not scale it. [`Obstacle::surface_velocity`] is s without b n.
+//!
+//! Growth, ageing and b are ours. Errors: [`ObstacleError`] names the field at fault; an [`Obstacle`] that was made has no other way to fail.
 
 mod abreast;
 mod motion;
@@ -107,7 +139,7 @@ pub(crate) struct Outlook<'a, S: Scalar, const D: usize> {
 }
 
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
-    /// Checks every field.
+    /// Checks every field. It is at rest in time: a [`Table`](crate::Table) carries it on.
     ///
     /// # Errors
     /// The first field that is out of its range, as [`ObstacleError`] states it.
@@ -158,22 +190,38 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         Ok(obstacle)
     }
 
-    /// Where and how it is now: the specification, with the pose carried on to the present.
+    /// Where and how it is now: the specification, with centre and rotation carried on to the present, and motion zero once it is held. The shape
+    /// is as it was given: growth and ageing are not in it.
     pub fn spec(&self) -> &ObstacleSpec<S, D> {
         &self.spec
     }
 
-    /// Gamma(x), dimensionless, with safety factors, growth and ageing; the largest number there is at the centre of a wall.
+    /// Gamma(x), dimensionless, at x (m, world's frame), with safety factors, growth and ageing: below 1 in the hard core, 1 on its surface, above
+    /// 1 outside; 0 at the centre, at that of a wall [`Scalar::MAX`].
+    ///
+    /// ```text
+    /// Gamma(x) = gamma(q_i/(eta_i L_i)), of a wall 1/gamma(q_i eta_i/L_i)
+    /// ```
     pub fn gamma(&self, x: &Vector<S, D>) -> S {
         self.level(&self.scaled(x)).0
     }
 
-    /// Gamma_k(x), dimensionless.
+    /// Gamma_k(x), dimensionless, at x (m, world's frame), with growth: at most 1 in the soft layer (and in the core). Of a rigid obstacle, rho = 1, it is
+    /// that of its shape without safety factor and ageing.
+    ///
+    /// ```text
+    /// Gamma_k(x) = gamma(q_i/(rho_i L_i)), of a wall 1/gamma(q_i rho_i/L_i)
+    /// ```
     pub fn gamma_soft(&self, x: &Vector<S, D>) -> S {
         self.level(&self.local(x).component_mul(&self.soft)).0
     }
 
-    /// dGamma/dx, 1/m. Near a polygon's corners, where Gamma has a kink, the blend of both sides that the method uses.
+    /// g = dGamma/dx, 1/m, D entries in the world's frame; zero at the centre. Near a polygon's corners, where Gamma has a kink, the blend of both
+    /// sides that the method uses. Of a wall it points into the free space.
+    ///
+    /// ```text
+    /// g = Q diag(1/(eta_i L_i)) gamma'(u),   of a wall -Q diag(eta_i/L_i) gamma'(u)/gamma(u)^2
+    /// ```
     pub fn gradient(&self, x: &Vector<S, D>) -> Vector<S, D> {
         let u = self.scaled(x);
         let (gamma, direction) = self.body.level(&self.spec.shape, &u);
@@ -188,7 +236,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     }
 
     /// The point of the hard surface (safety factors, growth and ageing included) that the ray from the centre along `direction` (world's
-    /// frame, any length) meets, m.
+    /// frame, any length) meets, m: c + direction/lambda with lambda the gauge of the direction. The centre for a direction of zero.
     ///
     /// ```
     /// use pliant_core::{Obstacle, ObstacleSpec, Vector};
@@ -199,12 +247,12 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.on_surface(direction, &self.hard)
     }
 
-    /// The same for the soft layer.
+    /// The same for the soft layer, Gamma_k = 1: m.
     pub fn soft_surface(&self, direction: &Vector<S, D>) -> Vector<S, D> {
         self.on_surface(direction, &self.soft)
     }
 
-    /// The velocity of the obstacle's matter at x, m/s: v + w x (x - c), without growth.
+    /// The velocity of the obstacle's matter at x (m, world's frame), m/s: v + w x (x - c), without growth.
     pub fn surface_velocity(&self, x: &Vector<S, D>) -> Vector<S, D> {
         self.spec.velocity + times(&self.spec.spin, &(x - self.spec.center))
     }
