@@ -5,7 +5,7 @@ use crate::{Matrix, RANGE, Scalar, Vector, in_range, times};
 /// Most components a skill may have: what a device has room for.
 pub const MAX_COMPONENTS: usize = 16;
 
-/// One linear system and the Gaussian that says where it rules.
+/// One linear system and the Gaussian that says where it rules. [`ModelField`] has the ranges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Component<S: Scalar, const D: usize> {
     /// log pi_k - 1/2 log det Sigma_k; a constant common to all components may be left out.
@@ -19,9 +19,28 @@ pub struct Component<S: Scalar, const D: usize> {
     pub a: Matrix<S, D>,
 }
 
-/// f(x) = sum_k gamma_k(x) A_k (x - x*), with the Lyapunov matrix P that is said to prove it stable.
+/// A learnt skill, with the Lyapunov matrix P that is said to prove it stable.
+///
+/// ```text
+/// f(x)    = sum_k gamma_k(x) A_k (x - x*)                                              m/s
+/// gamma_k = softmax_k( log pi_k - 1/2 log det Sigma_k - 1/2 |W_k (x - mu_k)|^2 )       W'W = Sigma^-1
+/// ```
+///
+/// The largest exponent is subtracted before exponentiating, so the weights sum to one however far x is from the data; a component whose exponent is more
+/// than 40 below the largest counts nothing. Figueroa & Billard, CoRL 2018; eqs. 1-5 of Chen et al.
 ///
 /// Built by [`LpvDs::new`], driven only once [`LpvDs::certify`] has found the proof to hold.
+///
+/// ```
+/// use nalgebra::{Matrix2, Vector2};
+/// use pliant_core::{Component, LpvDs};
+/// let part = |x, a| Component { log_weight: 0.0, mean: Vector2::new(x, 0.0), whitening: Matrix2::identity() * 20.0, a };
+/// let (left, right) = (part(-0.5, Matrix2::new(-1.0_f64, 1.0, -1.0, -1.0)), part(0.5, -Matrix2::identity()));
+/// let skill = LpvDs::new(Vector2::zeros(), Matrix2::identity(), &[left, right]).unwrap();
+/// // Ten standard deviations from the middle one system alone rules; in the middle both do.
+/// assert_eq!(skill.velocity(&Vector2::new(0.5, 0.0)), Vector2::new(-0.5, 0.0));
+/// assert!((skill.velocity(&Vector2::new(0.0, 0.2)) - Vector2::new(0.1, -0.2)).norm() < 1e-15);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct LpvDs<S: Scalar, const D: usize> {
     attractor: Vector<S, D>,
@@ -66,7 +85,8 @@ impl ModelError {
 }
 
 impl<S: Scalar, const D: usize> LpvDs<S, D> {
-    /// Checks ranges; whether the motion is stable is for [`LpvDs::certify`] to say.
+    /// A skill from x* (m), P (D x D, symmetric; its scale does not matter) and 1 to [`MAX_COMPONENTS`] components. Checks ranges;
+    /// whether the motion is stable is for [`LpvDs::certify`] to say.
     ///
     /// # Errors
     /// The first field that is not finite or out of its range, as [`ModelField`] states it.
@@ -103,7 +123,7 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
         Ok(Self { attractor, lyapunov, components })
     }
 
-    /// f(x), m/s. Zero at the attractor, finite for x within [`RANGE`](crate::RANGE).
+    /// f(x), m/s, at x in m. Zero at the attractor, finite for x within [`RANGE`](crate::RANGE). One exponential a component.
     pub fn velocity(&self, x: &Vector<S, D>) -> Vector<S, D> {
         // log(pi_k N_k), turned round and 1/32 as large, so that fixed point holds it up to 360 standard deviations away.
         let mut depths = [S::zero(); MAX_COMPONENTS];
@@ -136,7 +156,7 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
         &self.attractor
     }
 
-    /// P of V = (x - x*)' P (x - x*).
+    /// P of V = (x - x*)' P (x - x*), D x D.
     pub fn lyapunov(&self) -> &Matrix<S, D> {
         &self.lyapunov
     }

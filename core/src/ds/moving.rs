@@ -9,7 +9,7 @@ use crate::{Scalar, Vector, in_range};
 /// f(x, t) = f0(x - d(t)) + v,   d(t) = d(0) + v t
 /// ```
 ///
-/// where d is how far the attractor is from where the motion was learnt. With the attractor's own velocity fed forward, what is relative to
+/// where d (m) is how far the attractor is from where the motion was learnt. With the attractor's own velocity fed forward, what is relative to
 /// it converges as proven: the certificate holds in the moving frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moving<S: Scalar, const D: usize> {
@@ -29,17 +29,17 @@ impl<S: Scalar, const D: usize> Moving<S, D> {
         &self.motion
     }
 
-    /// The attractor's velocity, m/s.
+    /// v, the attractor's velocity, m/s.
     pub fn drift(&self) -> &Vector<S, D> {
         &self.velocity
     }
 
-    /// Where the attractor is now, m.
+    /// Where the attractor is now, x* + d(t), m.
     pub fn attractor(&self) -> Vector<S, D> {
         self.motion.attractor() + self.shift
     }
 
-    /// The velocity relative to the attractor's, m/s: zero at the attractor.
+    /// The velocity relative to the attractor's at x (m), f0(x - d(t)), m/s: zero at the attractor.
     pub fn relative(&self, x: &Vector<S, D>) -> Vector<S, D> {
         self.motion.velocity(&(x - self.shift))
     }

@@ -42,7 +42,7 @@ const SKIN: f64 = 1.0 / 65536.0;
 /// The share of the skin that one sample makes up for in its outer half: more than rounding takes, and no more of a push than that.
 const HOLD: f64 = 0.06;
 
-/// How the guard lets the robot come near.
+/// How the guard lets the robot come near: n.u >= -alpha room/dt. The [module](self) has the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guard<S> {
     /// alpha, above 0, at most 1: the share of the distance to a core that one sample may use up.
