@@ -46,13 +46,13 @@ pub trait Scalar:
     const EPSILON: Self;
     /// Largest finite number.
     const MAX: Self;
-    /// An obstacle with a larger Gamma is too far to matter: in floating point it would not change a digit of the velocity, in
-    /// fixed point Gamma is near the end of the range.
+    /// An obstacle with this Gamma or a larger one is too far to matter: in floating point, 1e15, it would not change a digit of the velocity; in
+    /// fixed point, 1000, Gamma is near the end of the range.
     const FAR: Self;
-    /// Smallest hard semi-axis of an obstacle, m: its reciprocal has to fit.
+    /// Smallest hard semi-axis of an obstacle, m: 1e-4 in floating point, 0.002 in fixed point, where its reciprocal has to fit.
     const MIN_AXIS: Self;
 
-    /// The nearest number of this type.
+    /// The nearest number of this type; beyond the range its end, or infinity for a type that has it.
     fn from_f64(x: f64) -> Self;
     /// The same number as `f64`, exactly.
     fn to_f64(self) -> f64;
