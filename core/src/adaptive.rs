@@ -1,13 +1,16 @@
-//! Motion in soft layers, the third stage of a tick: faster through one, slower where two overlap (eqs. 15 and 27 of Chen et al.).
+//! Motion in soft layers, the third stage of a tick: faster through one, slower where two overlap (eqs. 15 and 27 of
+//! Chen et al.).
 //!
 //! [`Stages::adapted`](crate::Stages::adapted) is its result, [`Settings::gain`](crate::Settings::gain) and
-//! [`Settings::steering`](crate::Settings::steering) what it is set by. Obstacle n is *soft here* where x is in its soft layer and in no part of
-//! its hard core: Gamma_n > 1 and Gamma_k,n <= 1 ([`Obstacle::gamma`](crate::Obstacle::gamma) and
-//! [`Obstacle::gamma_soft`](crate::Obstacle::gamma_soft)). Where none is, nothing changes.
+//! [`Settings::steering`](crate::Settings::steering) what it is set by. Obstacle n is *soft here* where x is in its
+//! soft layer and in no part of its hard core: Gamma_n > 1 and Gamma_k,n <= 1
+//! ([`Obstacle::gamma`](crate::Obstacle::gamma) and [`Obstacle::gamma_soft`](crate::Obstacle::gamma_soft)). Where
+//! none is, nothing changes.
 //!
-//! In the formulas u (m/s) is the modulated velocity ([`modulation`](crate::modulation)), f (m/s) the nominal one (relative to the attractor, where
-//! that moves), c (m/s) the gain, n_n the unit normal, and r_n leads from the obstacle's reference point to x. All is in the world's frame.
-//! The further in, the smaller Gamma_k and the stronger the push: c at the shell, c/Gamma_k^2 inside of it.
+//! In the formulas u (m/s) is the modulated velocity ([`modulation`](crate::modulation)), f (m/s) the nominal one
+//! (relative to the attractor, where that moves), c (m/s) the gain, n_n the unit normal, and r_n leads from the
+//! obstacle's reference point to x. All is in the world's frame. The further in, the smaller Gamma_k and the stronger
+//! the push: c at the shell, c/Gamma_k^2 inside of it.
 //!
 //! # `Fixed`: the paper to the letter
 //!
@@ -20,12 +23,14 @@
 //!                            (p_n - (p_n.n_n) n_n) c (2/(Gamma_k,n + Gamma_k,m))^2                    (eq. 27)
 //! ```
 //!
-//! In eq. 27 the push's component along the tangent plane is subtracted, in that plane. The push jumps by c at a shell, stays where f = 0,
-//! and its direction knows nothing of the flow: with one theta_2 the robot is faster past an obstacle on one side, slower or at a stop on the other.
+//! In eq. 27 the push's component along the tangent plane is subtracted, in that plane. The push jumps by c at a
+//! shell, stays where f = 0, and its direction knows nothing of the flow: with one theta_2 the robot is faster past
+//! an obstacle on one side, slower or at a stop on the other.
 //!
 //! # `WithFlow`: what changes
 //!
-//! The default keeps both sums. It chooses the direction of the push by the flow, bounds its length by beta |f|, and lets it fade in:
+//! The default keeps both sums. It chooses the direction of the push by the flow, bounds its length by beta |f|, and
+//! lets it fade in:
 //!
 //! ```text
 //! phi_n  = clamp((1 - Gamma_k,n)/0.1, 0, 1)        fade: 0 at the shell, 1 from a thin band on inwards
@@ -38,7 +43,8 @@
 //! u'     = (1 - min(|z|/|u|, 0.8)) u + faster
 //! ```
 //!
-//! with e_n a fixed side: in 2-D n_n turned by +90 degrees, in 3-D a x n_n with a = Q_n (1, 2, 2)/3, an axis that turns with the obstacle.
+//! with e_n a fixed side: in 2-D n_n turned by +90 degrees, in 3-D a x n_n with a = Q_n (1, 2, 2)/3, an axis that
+//! turns with the obstacle.
 //!
 //! | | `Fixed` | `WithFlow` |
 //! |---|---|---|
@@ -83,26 +89,30 @@ use crate::{Scalar, Vector, norm};
 /// Which way the push in a soft layer points, and what bounds it. The [module](self) has the equations of both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SteeringPolicy<S> {
-    /// The paper to the letter (eqs. 15 and 27 of Chen et al.): the reference direction turned by theta_2 (about z in 3-D), with the paper's sign.
+    /// The paper to the letter (eqs. 15 and 27 of Chen et al.): the reference direction turned by theta_2 (about z in
+    /// 3-D), with the paper's sign.
     ///
     /// ```text
     /// u + S_n R(theta_2) rhat_n c/Gamma_k,n^2
     /// ```
     ///
-    /// Whether it speeds the robot up or stops it dead depends on the side it passes on. It jumps at the shell and does not vanish where f does.
+    /// Whether it speeds the robot up or stops it dead depends on the side it passes on. It jumps at the shell and
+    /// does not vanish where f does.
     Fixed {
         /// cos theta_2; cos^2 + sin^2 is 1 to within 1e-3.
         cos: S,
         /// sin theta_2
         sin: S,
     },
-    /// Along the tangent plane in the direction of the flow, at most `beta` times the nominal speed, fading in at the shell.
+    /// Along the tangent plane in the direction of the flow, at most `beta` times the nominal speed, fading in at the
+    /// shell.
     ///
     /// ```text
     /// u + that_n phi_n min(c/Gamma_k,n^2, beta |f|)
     /// ```
     ///
-    /// Keeps the attractor an equilibrium and the velocity continuous. Where layers overlap u is shortened, by at most four fifths.
+    /// Keeps the attractor an equilibrium and the velocity continuous. Where layers overlap u is shortened, by at
+    /// most four fifths.
     WithFlow {
         /// Largest push over |f(x)|, dimensionless, 0 to 10; 1 by default, 0 pushes nowhere.
         beta: S,
@@ -123,7 +133,8 @@ const FULL: f64 = 0.02;
 /// Largest slow-down over the speed: an intersection slows the robot and never turns it round.
 const SLOWEST: f64 = 0.8;
 
-/// The modulated velocity u, adapted to the soft layers x is in; `gain` is the paper's c, `nominal` |f(x)|, both in m/s.
+/// The modulated velocity u, adapted to the soft layers x is in; `gain` is the paper's c, `nominal` |f(x)|, both in
+/// m/s.
 pub(crate) fn adapt<S: Scalar, const D: usize>(
     policy: &SteeringPolicy<S>,
     gain: S,

@@ -1,8 +1,9 @@
 //! The tick: position in, velocity out.
 //!
-//! [`Controller::tick`] has the order of its stages. A controller owns a [`Motion`], the [`Table`] of obstacles and the [`Settings`]; it has no clock
-//! (the time step is given), no I/O, allocates nothing and does not panic. Units are SI: m, m/s, m/s^2, s, rad. Vectors have D = 2 or 3 entries in the
-//! world's frame, in the one number type S throughout.
+//! [`Controller::tick`] has the order of its stages. A controller owns a [`Motion`], the [`Table`] of obstacles and
+//! the [`Settings`]; it has no clock (the time step is given), no I/O, allocates nothing and does not panic. Units
+//! are SI: m, m/s, m/s^2, s, rad. Vectors have D = 2 or 3 entries in the world's frame, in the one number type S
+//! throughout.
 
 use crate::adaptive::adapt;
 use crate::ds::Moving;
@@ -30,7 +31,8 @@ pub struct Settings<S> {
 }
 
 impl<S: Scalar> Default for Settings<S> {
-    /// Deformable, c = 0.03 m/s, with the flow at most as fast again, guarded, and the defaults of [`Limits`], [`Ageing`] and [`Guard`].
+    /// Deformable, c = 0.03 m/s, with the flow at most as fast again, guarded, and the defaults of [`Limits`],
+    /// [`Ageing`] and [`Guard`].
     fn default() -> Self {
         Self {
             deformable: true,
@@ -63,7 +65,8 @@ pub enum SettingsError {
 }
 
 impl<S: Scalar> Settings<S> {
-    /// Checks every range. A controller takes settings as they are: those that come from outside are to be checked first.
+    /// Checks every range. A controller takes settings as they are: those that come from outside are to be checked
+    /// first.
     ///
     /// # Errors
     /// The first setting out of its range, or not a number, as [`SettingsError`] states it.
@@ -119,8 +122,8 @@ impl<S: Scalar, const D: usize> RobotState<S, D> {
 pub struct Command<S: Scalar, const D: usize> {
     /// The velocity to drive with until the next tick, m/s: at most [`Limits::speed`] long.
     pub velocity: Vector<S, D>,
-    /// The least Gamma of all obstacles and points at x, as they are at this sample, dimensionless: above 1 outside every hard core;
-    /// [`Scalar::MAX`] without obstacles.
+    /// The least Gamma of all obstacles and points at x, as they are at this sample, dimensionless: above 1 outside
+    /// every hard core; [`Scalar::MAX`] without obstacles.
     pub gamma: S,
     /// The identifier of the obstacle it belongs to; `None` if there is none, or it is a point of the scan.
     pub nearest: Option<u16>,
@@ -149,9 +152,11 @@ pub struct Stages<S: Scalar, const D: usize> {
     pub status: Status,
 }
 
-/// One motion among at most `CAP` (1 to 64; more does not compile) obstacles and one scan. See the crate's front page for an example.
+/// One motion among at most `CAP` (1 to 64; more does not compile) obstacles and one scan. See the crate's front page
+/// for an example.
 ///
-/// What it remembers between ticks: the last command (for the acceleration limit), where attractor and obstacles are by now, and how old these are.
+/// What it remembers between ticks: the last command (for the acceleration limit), where attractor and obstacles are
+/// by now, and how old these are.
 #[derive(Clone, Debug)]
 pub struct Controller<S: Scalar, const D: usize, const CAP: usize> {
     motion: Moving<S, D>,
@@ -161,13 +166,14 @@ pub struct Controller<S: Scalar, const D: usize, const CAP: usize> {
 }
 
 impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
-    /// A controller at rest, without obstacles, its attractor where the motion has it. `settings` are taken as they are:
-    /// [`Settings::check`] those that come from outside.
+    /// A controller at rest, without obstacles, its attractor where the motion has it. `settings` are taken as they
+    /// are: [`Settings::check`] those that come from outside.
     pub fn new(motion: Motion<S, D>, settings: Settings<S>) -> Self {
         Self { motion: Moving::new(motion), settings, table: Table::new(), previous: Vector::zeros() }
     }
 
-    /// One step: the velocity to drive with for the next `dt` seconds, and these seconds pass for obstacles and attractor.
+    /// One step: the velocity to drive with for the next `dt` seconds, and these seconds pass for obstacles and
+    /// attractor.
     ///
     /// ```text
     ///    stage      formula                                                               sets
@@ -180,13 +186,15 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
     /// 7  guard      nearest u with n.u >= -alpha room/dt for every core near               GUARDED, INFEASIBLE
     /// ```
     ///
-    /// The formulas in full, with their sources, are on the pages of [`ds`](crate::ds), [`modulation`](crate::modulation),
-    /// [`adaptive`](crate::adaptive), [`limits`](crate::limits), [`table`](crate::table) and [`guard`](crate::guard); [`Status`] says what each flag
-    /// means. Stages 1 to 4 see attractor and obstacles as they are at this sample, the guard as they will be at the next one. gamma, nearest and
-    /// region are those of x at this sample; EXTRAPOLATED and HELD speak of ages before the step.
+    /// The formulas in full, with their sources, are on the pages of [`ds`](crate::ds),
+    /// [`modulation`](crate::modulation), [`adaptive`](crate::adaptive), [`limits`](crate::limits),
+    /// [`table`](crate::table) and [`guard`](crate::guard); [`Status`] says what each flag means. Stages 1 to 4 see
+    /// attractor and obstacles as they are at this sample, the guard as they will be at the next one. gamma, nearest
+    /// and region are those of x at this sample; EXTRAPOLATED and HELD speak of ages before the step.
     ///
-    /// `dt` is in s, not negative. With 0 no time passes, nothing is guarded, and a set acceleration leaves the command as it was. A `dt` that is
-    /// negative or not finite counts as 0, and the command is zero with [`Status::NOT_FINITE`].
+    /// `dt` is in s, not negative. With 0 no time passes, nothing is guarded, and a set acceleration leaves the
+    /// command as it was. A `dt` that is negative or not finite counts as 0, and the command is zero with
+    /// [`Status::NOT_FINITE`].
     ///
     /// ```
     /// use nalgebra::Vector2;
@@ -225,9 +233,10 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         Command { velocity, gamma: stages.gamma, nearest: stages.nearest, region: stages.region, status }
     }
 
-    /// One step of `dt` seconds (as in [`Controller::tick`]) without a fresh state: from the last command towards rest, by
-    /// [`Limits::ramp_down`]. `last` is where the robot was last known to be, of which gamma, nearest and region speak. Nobody knows where it is
-    /// now, so there is nothing to guard. The status has [`Status::LATE`], and what stage 5 sets.
+    /// One step of `dt` seconds (as in [`Controller::tick`]) without a fresh state: from the last command towards
+    /// rest, by [`Limits::ramp_down`]. `last` is where the robot was last known to be, of which gamma, nearest and
+    /// region speak. Nobody knows where it is now, so there is nothing to guard. The status has [`Status::LATE`], and
+    /// what stage 5 sets.
     pub fn tick_late(&mut self, last: &RobotState<S, D>, dt: S) -> Command<S, D> {
         let mut around = Surroundings::new(&Vector::zeros());
         self.table.look(last.position(), self.settings.deformable, None, &mut around);
@@ -239,7 +248,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         Command { velocity, gamma: around.gamma, nearest: around.nearest, region: region(&around), status }
     }
 
-    /// `dt` seconds pass without a command: obstacles and attractor move on and age (stage 5), and the robot counts as at rest.
+    /// `dt` seconds pass without a command: obstacles and attractor move on and age (stage 5), and the robot counts
+    /// as at rest.
     pub fn wait(&mut self, dt: S) {
         self.pass(time_step(dt).0);
         self.previous = Vector::zeros();
@@ -258,9 +268,9 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         self.table.set_scan(scan, age, &self.settings.ageing);
     }
 
-    /// Puts the attractor at `position` (m), moving at `velocity` (m/s): from now on f(x, t) = f0(x - d(t)) + velocity, with d how far it is from
-    /// where the motion was learnt. False, and nothing changed, if a coordinate is not finite, beyond +-1000 m, or faster than
-    /// [`MAX_SPEED`](crate::obstacle::MAX_SPEED).
+    /// Puts the attractor at `position` (m), moving at `velocity` (m/s): from now on f(x, t) = f0(x - d(t)) +
+    /// velocity, with d how far it is from where the motion was learnt. False, and nothing changed, if a coordinate
+    /// is not finite, beyond +-1000 m, or faster than [`MAX_SPEED`](crate::obstacle::MAX_SPEED).
     pub fn aim(&mut self, position: &Vector<S, D>, velocity: &Vector<S, D>) -> bool {
         self.motion.aim(position, velocity)
     }
@@ -274,7 +284,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         self.stages(&relative, nominal, &around)
     }
 
-    /// Stage 2, the velocity bent round every hard core, m/s, without what soft layers and limits do to it. Nothing changes.
+    /// Stage 2, the velocity bent round every hard core, m/s, without what soft layers and limits do to it. Nothing
+    /// changes.
     pub fn modulated(&self, state: &RobotState<S, D>) -> Vector<S, D> {
         let x = state.position();
         let (_, nominal) = self.nominal(x);

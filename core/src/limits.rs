@@ -1,6 +1,7 @@
 //! What the robot may be asked for: the fourth stage of a tick.
 //!
-//! With u the wanted velocity, u_previous the command of the last tick, v the largest speed and a the largest acceleration,
+//! With u the wanted velocity, u_previous the command of the last tick, v the largest speed and a the largest
+//! acceleration,
 //!
 //! ```text
 //! u  <- u min(1, v/|u|)                                      |u| <= v: scaled, direction kept
@@ -8,13 +9,15 @@
 //! u  <- u min(1, v/|u|)                                      once more: v may have been lowered since the last command
 //! ```
 //!
-//! all in the Euclidean norm, in m/s, m/s^2 and s. The second line acts where an acceleration is set, the third where the second did. A speed that
-//! is lowered holds at once, whatever acceleration it takes. This stage knows no obstacles: that a velocity that could not change fast
-//! enough does not end in a core is the [`guard`](crate::guard)'s part, which may exceed a, never v.
+//! all in the Euclidean norm, in m/s, m/s^2 and s. The second line acts where an acceleration is set, the third where
+//! the second did. A speed that is lowered holds at once, whatever acceleration it takes. This stage knows no
+//! obstacles: that a velocity that could not change fast enough does not end in a core is the
+//! [`guard`](crate::guard)'s part, which may exceed a, never v.
 
 use crate::{Scalar, Status, Vector, unit};
 
-/// Bounds on the commanded velocity. They are taken as they are; [`Settings::check`](crate::Settings::check) checks them.
+/// Bounds on the commanded velocity. They are taken as they are; [`Settings::check`](crate::Settings::check) checks
+/// them.
 ///
 /// ```
 /// use nalgebra::Vector2;
@@ -42,9 +45,9 @@ impl<S: Scalar> Default for Limits<S> {
 }
 
 impl<S: Scalar> Limits<S> {
-    /// `wanted` within the limits, where the last command was `previous` (both m/s) and `dt` >= 0 seconds pass: the [module](self)'s
-    /// three lines. With it [`Status::SPEED_LIMITED`] where the first line shortened, [`Status::ACCELERATION_LIMITED`] where the second did.
-    /// Not-a-number goes through.
+    /// `wanted` within the limits, where the last command was `previous` (both m/s) and `dt` >= 0 seconds pass: the
+    /// [module](self)'s three lines. With it [`Status::SPEED_LIMITED`] where the first line shortened,
+    /// [`Status::ACCELERATION_LIMITED`] where the second did. Not-a-number goes through.
     pub fn apply<const D: usize>(
         &self,
         wanted: Vector<S, D>,
@@ -80,7 +83,8 @@ impl<S: Scalar> Limits<S> {
 
 /// The vector, at most `length` long, and whether it had to be shortened.
 fn shortened<S: Scalar, const D: usize>(v: Vector<S, D>, length: S) -> (Vector<S, D>, bool) {
-    // Halved, so that the length of the largest vector fits; divided first, so that in fixed point the ratio keeps its digits.
+    // Halved, so that the length of the largest vector fits; divided first, so that in fixed point the ratio keeps
+    // its digits.
     let half = S::from_f64(0.5);
     let halved = v * half;
     let (own, unit) = unit(&halved);

@@ -113,8 +113,8 @@ pub(crate) fn between<S: Scalar, const D: usize>(
     search(&[a, b], &start, depth)
 }
 
-/// A point inside several cores, m, by bounded steps: each away from the one it is least inside of, along that one's Gamma. The deepest of all it comes by,
-/// if that is inside all.
+/// A point inside several cores, m, by bounded steps: each away from the one it is least inside of, along that one's
+/// Gamma. The deepest of all it comes by, if that is inside all.
 pub(crate) fn search<S: Scalar, const D: usize>(
     members: &[Inside<'_, S, D>],
     start: &Vector<S, D>,
@@ -143,8 +143,8 @@ pub(crate) fn search<S: Scalar, const D: usize>(
     best.1
 }
 
-/// Is one of two members behind the tangent plane that the other, `one`, has on the ray from its centre to x, where it has this Gamma and its slope
-/// has this direction? Never true of two that overlap.
+/// Is one of two members behind the tangent plane that the other, `one`, has on the ray from its centre to x, where
+/// it has this Gamma and its slope has this direction? Never true of two that overlap.
 fn are_apart<S: Scalar, const D: usize>(
     members: &[Inside<'_, S, D>],
     one: &Inside<'_, S, D>,
@@ -217,8 +217,8 @@ fn between_ellipsoids<S: Scalar, const D: usize>(
     halve(at, |x| (a.gamma(x), b.gamma(x)), HALVINGS, depth)
 }
 
-/// Along a way on which the first of two levels grows and the second falls: the point where both are equal; or the first one that is deep enough, or where
-/// both say that the whole way is outside of one.
+/// Along a way on which the first of two levels grows and the second falls: the point where both are equal; or the
+/// first one that is deep enough, or where both say that the whole way is outside of one.
 fn halve<S: Scalar, const D: usize>(
     at: impl Fn(S) -> Vector<S, D>,
     levels: impl Fn(&Vector<S, D>) -> (S, S),

@@ -1,18 +1,21 @@
 //! Raw range points as one obstacle: a planar scan or a depth patch, without a shape.
 //!
-//! Each point p_i (m) is a rigid ball of radius R (m) at rest, with Gamma_i = |x - p_i|^2 / R^2. As in fast obstacle avoidance for lidar (Huber, Slotine & Billard 2022) there is
-//! one modulation from all points rather than one a point: with weights w_i proportional to 1/(Gamma_i - 1) and n_i = (x - p_i)/|x - p_i|,
+//! Each point p_i (m) is a rigid ball of radius R (m) at rest, with Gamma_i = |x - p_i|^2 / R^2. As in fast obstacle
+//! avoidance for lidar (Huber, Slotine & Billard 2022) there is one modulation from all points rather than one a
+//! point: with weights w_i proportional to 1/(Gamma_i - 1) and n_i = (x - p_i)/|x - p_i|,
 //!
 //! ```text
 //! nbar = sum_i w_i n_i,   xdot = M f with n = r = nbar/|nbar| and 1/G = |nbar| / min_i Gamma_i
 //! ```
 //!
-//! On the surface of a point's ball nbar is its normal and the flow slides along it; between points on two sides nbar is short and the flow
-//! passes through the middle unbent: there G is beyond what counts. Where min_i Gamma_i <= 1, G is that itself. Among obstacles the scan counts as one
-//! more of them ([`modulation`](crate::modulation)) and has no soft layer; the [`guard`](crate::guard) keeps off each point, by a half-space with n = n_i
-//! and gap = |x - p_i| - R.
+//! On the surface of a point's ball nbar is its normal and the flow slides along it; between points on two sides nbar
+//! is short and the flow passes through the middle unbent: there G is beyond what counts. Where min_i Gamma_i <= 1, G
+//! is that itself. Among obstacles the scan counts as one more of them ([`modulation`](crate::modulation)) and has no
+//! soft layer; the [`guard`](crate::guard) keeps off each point, by a half-space with n = n_i and gap = |x - p_i| -
+//! R.
 //!
-//! A scan that is older than its time to live grows: R += (ageing growth) dt, up to its hold time (see [`Ageing`]); it does not move.
+//! A scan that is older than its time to live grows: R += (ageing growth) dt, up to its hold time (see [`Ageing`]);
+//! it does not move.
 
 use crate::obstacle::Sample;
 use crate::table::Ageing;
@@ -48,8 +51,8 @@ impl<S: Scalar, const D: usize> Default for Scan<S, D> {
 }
 
 impl<S: Scalar, const D: usize> Scan<S, D> {
-    /// Points (m), each to be kept away from by `radius` (m): half their spacing and more, so that nothing fits between them; plus the robot's
-    /// own size.
+    /// Points (m), each to be kept away from by `radius` (m): half their spacing and more, so that nothing fits
+    /// between them; plus the robot's own size.
     ///
     /// # Errors
     /// Too many points, or the first one out of its range.

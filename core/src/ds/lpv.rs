@@ -12,8 +12,8 @@ pub struct Component<S: Scalar, const D: usize> {
     pub log_weight: S,
     /// mu_k, m.
     pub mean: Vector<S, D>,
-    /// W_k, 1/m: lower triangular with W'W = Sigma^-1, so that (x - mu)' Sigma^-1 (x - mu) = |W (x - mu)|^2 is never negative,
-    /// whatever the rounding.
+    /// W_k, 1/m: lower triangular with W'W = Sigma^-1, so that (x - mu)' Sigma^-1 (x - mu) = |W (x - mu)|^2 is never
+    /// negative, whatever the rounding.
     pub whitening: Matrix<S, D>,
     /// A_k, 1/s.
     pub a: Matrix<S, D>,
@@ -26,8 +26,9 @@ pub struct Component<S: Scalar, const D: usize> {
 /// gamma_k = softmax_k( log pi_k - 1/2 log det Sigma_k - 1/2 |W_k (x - mu_k)|^2 )       W'W = Sigma^-1
 /// ```
 ///
-/// The largest exponent is subtracted before exponentiating, so the weights sum to one however far x is from the data; a component whose exponent is more
-/// than 40 below the largest counts nothing. Figueroa & Billard, CoRL 2018; eqs. 1-5 of Chen et al.
+/// The largest exponent is subtracted before exponentiating, so the weights sum to one however far x is from the
+/// data; a component whose exponent is more than 40 below the largest counts nothing. Figueroa & Billard, CoRL 2018;
+/// eqs. 1-5 of Chen et al.
 ///
 /// Built by [`LpvDs::new`], driven only once [`LpvDs::certify`] has found the proof to hold.
 ///
@@ -85,8 +86,8 @@ impl ModelError {
 }
 
 impl<S: Scalar, const D: usize> LpvDs<S, D> {
-    /// A skill from x* (m), P (D x D, symmetric; its scale does not matter) and 1 to [`MAX_COMPONENTS`] components. Checks ranges;
-    /// whether the motion is stable is for [`LpvDs::certify`] to say.
+    /// A skill from x* (m), P (D x D, symmetric; its scale does not matter) and 1 to [`MAX_COMPONENTS`] components.
+    /// Checks ranges; whether the motion is stable is for [`LpvDs::certify`] to say.
     ///
     /// # Errors
     /// The first field that is not finite or out of its range, as [`ModelField`] states it.
@@ -123,9 +124,11 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
         Ok(Self { attractor, lyapunov, components })
     }
 
-    /// f(x), m/s, at x in m. Zero at the attractor, finite for x within [`RANGE`](crate::RANGE). One exponential a component.
+    /// f(x), m/s, at x in m. Zero at the attractor, finite for x within [`RANGE`](crate::RANGE). One exponential a
+    /// component.
     pub fn velocity(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        // log(pi_k N_k), turned round and 1/32 as large, so that fixed point holds it up to 360 standard deviations away.
+        // log(pi_k N_k), turned round and 1/32 as large, so that fixed point holds it up to 360 standard deviations
+        // away.
         let mut depths = [S::zero(); MAX_COMPONENTS];
         let mut least = S::MAX;
         for (depth, c) in depths.iter_mut().zip(&self.components) {
@@ -139,8 +142,8 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
         let mut velocity = Vector::<S, D>::zeros();
         for (depth, c) in depths.iter().zip(&self.components) {
             let exponent = (least - *depth) * S::from_f64(32.0);
-            // A weight below e^-40 of the largest is less than the rounding of their sum, also in f64: the velocity misses that share of what this
-            // component alone would have.
+            // A weight below e^-40 of the largest is less than the rounding of their sum, also in f64: the velocity
+            // misses that share of what this component alone would have.
             if exponent < S::from_f64(-40.0) {
                 continue;
             }

@@ -1,6 +1,7 @@
 //! Nominal motion: where the robot would go if nothing were in the way.
 //!
-//! A learnt skill is a linear-parameter-varying dynamical system (LPV-DS; Figueroa & Billard, CoRL 2018; eqs. 1-5 of Chen et al.)
+//! A learnt skill is a linear-parameter-varying dynamical system (LPV-DS; Figueroa & Billard, CoRL 2018; eqs. 1-5 of
+//! Chen et al.)
 //!
 //! ```text
 //! f(x)    = sum_k gamma_k(x) A_k (x - x*)                       m/s
@@ -14,8 +15,9 @@
 //! dV/dt = sum_k gamma_k (x - x*)' (A_k' P + P A_k) (x - x*) < 0      but at x*, for gamma_k >= 0 sum to 1
 //! ```
 //!
-//! [`Certified`] is that proof as a type: nothing else can be driven, but for [`Motion::linear`], f(x) = -gain (x - x*), which needs none. The proof is of the
-//! motion in continuous time, without obstacles. Where the attractor moves, [`Moving`] carries the motion along.
+//! [`Certified`] is that proof as a type: nothing else can be driven, but for [`Motion::linear`], f(x) = -gain (x -
+//! x*), which needs none. The proof is of the motion in continuous time, without obstacles. Where the attractor
+//! moves, [`Moving`] carries the motion along.
 
 mod certificate;
 mod lpv;
@@ -47,7 +49,8 @@ impl<S: Scalar, const D: usize> Motion<S, D> {
     /// Straight to `attractor` (m) at `gain` (1/s) times the distance.
     ///
     /// # Errors
-    /// [`ModelField::Attractor`] where a coordinate is not within +-1000 m, [`ModelField::Gain`] where the gain is not above 0 and at most 1000 1/s.
+    /// [`ModelField::Attractor`] where a coordinate is not within +-1000 m, [`ModelField::Gain`] where the gain is
+    /// not above 0 and at most 1000 1/s.
     ///
     /// ```
     /// use pliant_core::{Motion, Vector};

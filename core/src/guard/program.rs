@@ -55,8 +55,8 @@ pub struct Solution<S: Scalar, const D: usize> {
 /// with an entry that is not a number is ignored; a `wanted` that is not finite counts as zero. The half-spaces may be left in
 /// another order; which one they came in does not matter to the result, but to rounding.
 ///
-/// Found exactly, by the incremental scheme known from ORCA (van den Berg et al. 2011), with the most violated half-space always next. No errors: there is
-/// always an answer, and [`Solution::feasible`] says of which kind.
+/// Found exactly, by the incremental scheme known from ORCA (van den Berg et al. 2011), with the most violated
+/// half-space always next. No errors: there is always an answer, and [`Solution::feasible`] says of which kind.
 ///
 /// ```
 /// use pliant_core::Vector;

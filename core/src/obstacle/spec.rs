@@ -15,27 +15,30 @@ pub const MAX_RATIO: f64 = 100.0;
 pub struct ObstacleSpec<S: Scalar, const D: usize> {
     /// c, m: each coordinate within +-1000 m.
     pub center: Vector<S, D>,
-    /// Q, D x D, from the obstacle's frame to the world's: x = c + Q q. Orthonormal to 1e-3, right-handed; see [`rotation`].
+    /// Q, D x D, from the obstacle's frame to the world's: x = c + Q q. Orthonormal to 1e-3, right-handed; see
+    /// [`rotation`].
     pub rotation: Matrix<S, D>,
     /// The hard core, in the obstacle's frame, without safety factors.
     pub shape: Shape<S, D>,
     /// Turned inside out: the shape is the free space, what is around it a wall.
     pub wall: bool,
-    /// rho >= 1 along each axis of the frame: the soft layer's surface is the core's, this much larger (of a wall, smaller); 1 is rigid.
-    /// From 1 to [`MAX_RATIO`]; of a polygon the same along both axes. For one stiffness k of Chen et al.: rho = ln k + 1.
+    /// rho >= 1 along each axis of the frame: the soft layer's surface is the core's, this much larger (of a wall,
+    /// smaller); 1 is rigid. From 1 to [`MAX_RATIO`]; of a polygon the same along both axes. For one stiffness k of
+    /// Chen et al.: rho = ln k + 1.
     pub soft_ratio: Vector<S, D>,
-    /// eta >= 1, the safety factor along each axis of the frame: the hard core's surface is the shape's, this much larger (of a wall, smaller).
-    /// From 1 to [`MAX_RATIO`]; of a polygon the same along both axes.
+    /// eta >= 1, the safety factor along each axis of the frame: the hard core's surface is the shape's, this much
+    /// larger (of a wall, smaller). From 1 to [`MAX_RATIO`]; of a polygon the same along both axes.
     pub margin: Vector<S, D>,
-    /// r0, the reference point in the obstacle's frame, m: strictly inside the shape as given (of a wall, inside the free space), and where all of a
-    /// polygon is seen from.
+    /// r0, the reference point in the obstacle's frame, m: strictly inside the shape as given (of a wall, inside the
+    /// free space), and where all of a polygon is seen from.
     pub reference: Vector<S, D>,
     /// v, of the centre, m/s, in the world's frame: each entry within +-[`MAX_SPEED`].
     pub velocity: Vector<S, D>,
-    /// w, the angular velocity as a skew D x D matrix in the world's frame, rad/s: each entry within +-[`MAX_SPEED`]; see
-    /// [`rotation::planar_spin`] and [`rotation::spatial_spin`].
+    /// w, the angular velocity as a skew D x D matrix in the world's frame, rad/s: each entry within +-[`MAX_SPEED`];
+    /// see [`rotation::planar_spin`] and [`rotation::spatial_spin`].
     pub spin: Matrix<S, D>,
-    /// How fast each semi-extent becomes longer (below zero: shorter), m/s, within +-[`MAX_SPEED`]. The soft layer grows with the core.
+    /// How fast each semi-extent becomes longer (below zero: shorter), m/s, within +-[`MAX_SPEED`]. The soft layer
+    /// grows with the core.
     pub growth: S,
 }
 

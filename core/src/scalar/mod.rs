@@ -1,7 +1,7 @@
 //! The numbers the method computes with.
 //!
-//! Every function that is not plain arithmetic is this crate's own or goes through `libm`, never through the platform's math
-//! library: then a PC and a microcontroller compute the same bits from the same inputs.
+//! Every function that is not plain arithmetic is this crate's own or goes through `libm`, never through the
+//! platform's math library: then a PC and a microcontroller compute the same bits from the same inputs.
 
 mod angle;
 mod fixed;
@@ -46,10 +46,11 @@ pub trait Scalar:
     const EPSILON: Self;
     /// Largest finite number.
     const MAX: Self;
-    /// An obstacle with this Gamma or a larger one is too far to matter: in floating point, 1e15, it would not change a digit of the velocity; in
-    /// fixed point, 1000, Gamma is near the end of the range.
+    /// An obstacle with this Gamma or a larger one is too far to matter: in floating point, 1e15, it would not change
+    /// a digit of the velocity; in fixed point, 1000, Gamma is near the end of the range.
     const FAR: Self;
-    /// Smallest hard semi-axis of an obstacle, m: 1e-4 in floating point, 0.002 in fixed point, where its reciprocal has to fit.
+    /// Smallest hard semi-axis of an obstacle, m: 1e-4 in floating point, 0.002 in fixed point, where its reciprocal
+    /// has to fit.
     const MIN_AXIS: Self;
 
     /// The nearest number of this type; beyond the range its end, or infinity for a type that has it.
@@ -75,17 +76,18 @@ pub trait Scalar:
     ///
     /// Error, rad: 9e-16 (`f64`), 2e-7 (`f32`), 1.5e-6 ([`Fixed`]).
     fn atan2(self, x: Self) -> Self;
-    /// Length and angle (as [`Scalar::atan2`]) of the point (x, y): for little more than the angle. Error of the length: 2e-16 (`f64`), 2e-7 (`f32`) of
-    /// it, half a step and 4e-8 of it ([`Fixed`]).
+    /// Length and angle (as [`Scalar::atan2`]) of the point (x, y): for little more than the angle. Error of the
+    /// length: 2e-16 (`f64`), 2e-7 (`f32`) of it, half a step and 4e-8 of it ([`Fixed`]).
     fn polar(x: Self, y: Self) -> (Self, Self);
     /// A bound on the rounding error of one product of terms of this size.
     fn rounding(size: Self) -> Self;
     /// Euclidean length, for components whose squares need not fit in fixed point.
     fn norm(components: &[Self]) -> Self;
-    /// sqrt(hypotenuse^2 - leg^2), zero where that is no number: the other leg, for lengths whose squares need not fit, or have no digits, in fixed point.
+    /// sqrt(hypotenuse^2 - leg^2), zero where that is no number: the other leg, for lengths whose squares need not
+    /// fit, or have no digits, in fixed point.
     fn other_leg(hypotenuse: Self, leg: Self) -> Self;
-    /// The length of a vector of up to three components, and the vector over it; zero where that is no number. Error of the length in fixed point: half a
-    /// step, and 1.5e-8 of it.
+    /// The length of a vector of up to three components, and the vector over it; zero where that is no number. Error
+    /// of the length in fixed point: half a step, and 1.5e-8 of it.
     #[inline(always)]
     fn unit<const D: usize>(v: [Self; D]) -> (Self, [Self; D]) {
         let length = Self::norm(&v);

@@ -1,14 +1,15 @@
 //! The shapes a hard core may have, and the one small trait through which the method sees them.
 //!
-//! A shape lives in its own frame, about the origin, and is star-shaped there: each ray from the origin meets its surface once, at a distance
-//! R. The method looks at it through scaled coordinates u (one factor an axis: safety factors, soft layers, growth), in which
+//! A shape lives in its own frame, about the origin, and is star-shaped there: each ray from the origin meets its
+//! surface once, at a distance R. The method looks at it through scaled coordinates u (one factor an axis: safety
+//! factors, soft layers, growth), in which
 //!
 //! ```text
 //! gamma(u) = (|u| / R(u))^2p          below 1 inside, 1 on the surface, above 1 outside
 //! ```
 //!
-//! with p = 1 for all but the superellipsoid: dimensionless, homogeneous of degree 2p. lambda = |u|/R(u) is the gauge. Turned inside out, as a wall, the
-//! same shape has 1/gamma. Unscaled, for q in the shape's frame (m):
+//! with p = 1 for all but the superellipsoid: dimensionless, homogeneous of degree 2p. lambda = |u|/R(u) is the
+//! gauge. Turned inside out, as a wall, the same shape has 1/gamma. Unscaled, for q in the shape's frame (m):
 //!
 //! | shape | gauge |
 //! |---|---|
@@ -16,10 +17,12 @@
 //! | [box](Shape::Box), [cylinder](Shape::Cylinder), [capsule](Shape::Capsule) | sum_i max(t_i - lambda h_i, 0)^2 = (lambda R)^2 |
 //! | [polygon](Shape::Polygon), edge from v to w | lambda = a + b where q = a v + b w, a, b >= 0 |
 //!
-//! with R the radius of edges, h the half extents less R, and t_i = abs(q_i), of cylinder and capsule t = (abs((q_1, q_2)), abs(q_3)). The first is of
-//! Khansari-Zadeh & Billard (2012), star shapes by R(u) of Huber, Billard & Slotine (2019).
+//! with R the radius of edges, h the half extents less R, and t_i = abs(q_i), of cylinder and capsule t = (abs((q_1,
+//! q_2)), abs(q_3)). The first is of Khansari-Zadeh & Billard (2012), star shapes by R(u) of Huber, Billard & Slotine
+//! (2019).
 //!
-//! An [`Obstacle`](crate::Obstacle) checks its shape; every length is in m, from [`Scalar::MIN_AXIS`] to 1000 m, where nothing else is said.
+//! An [`Obstacle`](crate::Obstacle) checks its shape; every length is in m, from [`Scalar::MIN_AXIS`] to 1000 m,
+//! where nothing else is said.
 
 mod polygon;
 mod rounded;
@@ -169,8 +172,9 @@ impl<S: Scalar, const D: usize> Shape<S, D> {
         }
     }
 
-    /// What growth is measured by, m: an extent that becomes longer by a metre makes its axis so much longer in proportion. Scaled by one factor an
-    /// axis, a polygon would uncover parts of itself, so it has one for both: the distance of the nearest edge, and no edge moves less.
+    /// What growth is measured by, m: an extent that becomes longer by a metre makes its axis so much longer in
+    /// proportion. Scaled by one factor an axis, a polygon would uncover parts of itself, so it has one for both: the
+    /// distance of the nearest edge, and no edge moves less.
     pub(crate) fn growing_extent(&self) -> Vector<S, D> {
         match self {
             Self::Polygon(polygon) => {
@@ -244,8 +248,8 @@ impl<S: Scalar, const D: usize> Body<S, D> {
         }
     }
 
-    /// At most 1 where the whole surface is seen from, so that a reference point may be there: gamma, but of a polygon. And the direction in which
-    /// it grows.
+    /// At most 1 where the whole surface is seen from, so that a reference point may be there: gamma, but of a
+    /// polygon. And the direction in which it grows.
     pub fn sight(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> (S, Vector<S, D>) {
         match (self, shape) {
             (Self::Polygon { scale, .. }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).sight(u),

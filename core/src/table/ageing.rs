@@ -9,9 +9,10 @@ use crate::Scalar;
 /// hard semi-extent = eta (as seen + obstacle's own growth * t) + growth * max(0, t - time_to_live)
 /// ```
 ///
-/// with eta the obstacle's safety factor. Its velocity and spin end at `hold` as well. Every hard semi-extent becomes longer by the same length: semi-axes, half
-/// sides, radius and half length with the radius; of a polygon all of it in proportion, by the distance of its nearest edge. A wall's free space becomes
-/// smaller by as much, but never below a tenth.
+/// with eta the obstacle's safety factor. Its velocity and spin end at `hold` as well. Every hard semi-extent becomes
+/// longer by the same length: semi-axes, half sides, radius and half length with the radius; of a polygon all of it
+/// in proportion, by the distance of its nearest edge. A wall's free space becomes smaller by as much, but never
+/// below a tenth.
 ///
 /// ```
 /// use nalgebra::Vector2;
