@@ -176,14 +176,14 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
     /// attractor.
     ///
     /// ```text
-    ///    stage      formula                                                               sets
-    /// 1  nominal    f(x, t) = f0(x - d) + v                        d, v: of the attractor
-    /// 2  modulated  speed sum_n w_n |xdot_n|, direction by angles, xdot_n past obstacle n  REFERENCE
-    /// 3  adapted    (1 - slower) u + faster                        in soft layers
-    /// 4  limited    |u| <= speed,  |u - u_previous| <= acceleration dt                     SPEED_LIMITED, ACCELERATION_LIMITED
-    /// 5  time       c += v dt, Q turns, sizes grow, ages += dt                             EXTRAPOLATED, HELD, CLUSTER
-    /// 6  finite     u = 0 unless every entry is a number                                   NOT_FINITE
-    /// 7  guard      nearest u with n.u >= -alpha room/dt for every core near               GUARDED, INFEASIBLE
+    ///    stage      formula                                             sets
+    /// 1  nominal    f(x, t) = f0(x - d) + v      d, v: of the attractor
+    /// 2  modulated  speed sum_n w_n |xdot_n|, direction by angles       REFERENCE
+    /// 3  adapted    (1 - slower) u + faster      in soft layers
+    /// 4  limited    |u| <= speed, |u - u_previous| <= acceleration dt   SPEED_LIMITED, ACCELERATION_LIMITED
+    /// 5  time       c += v dt, Q turns, sizes grow, ages += dt          EXTRAPOLATED, HELD, CLUSTER
+    /// 6  finite     u = 0 unless every entry is a number                NOT_FINITE
+    /// 7  guard      nearest u, n.u >= -alpha room/dt, |u| <= speed      GUARDED, INFEASIBLE
     /// ```
     ///
     /// The formulas in full, with their sources, are on the pages of [`ds`](crate::ds),

@@ -20,6 +20,26 @@
 //! What is exact: superellipsoids, boxes, cylinders, capsules, points of a scan, and polygons, by their convex
 //! pieces. A wall's free space is convex but for polygons; a half-space would let a step end outside of its curve, so
 //! it is moved inwards by what the curve can bend within one step.
+//!
+//! n is a unit vector in the world's frame that points to where the robot may be; gap, room and skin are in m, u and
+//! speed in m/s, dt in s; alpha is [`Guard::approach`]. By shape, with Gamma, lambda and p from
+//! [`obstacle`](crate::obstacle) and [`shape`](crate::shape),
+//!
+//! ```text
+//! superellipsoid           n = g/|g|                    gap = n.(x - y),  y = c + (x - c) Gamma^(-1/2p)
+//! box, cylinder, capsule   n along grad lambda          gap = (lambda - 1)/|grad lambda|
+//! point of a scan          n = (x - p_i)/|x - p_i|      gap = |x - p_i| - R
+//! polygon                  one for each convex piece: off its nearest edge, or its nearest corner
+//! wall                     n inwards                    gap = the tangent's, less what the curve bends within speed dt
+//!
+//! room = gap - skin,   skin = max(2^-16 m, 16 eps max(1 m, |x_i|)),   eps: Scalar::EPSILON
+//! ```
+//!
+//! [`Status::GUARDED`](crate::Status::GUARDED) says that the command is another than was wanted,
+//! [`Status::INFEASIBLE`](crate::Status::INFEASIBLE) that there is no velocity that fulfils all. The guard may change the
+//! velocity by more than the acceleration limit, never beyond the speed. The papers have no such stage: it is ours, but
+//! for the way in which the nearest velocity is found ([`nearest`], known from ORCA, van den Berg et al. 2011). Polygons
+//! and walls in full are in section 7 of `docs/method.md`.
 
 mod program;
 

@@ -10,6 +10,7 @@
 //! ([`Obstacle::gamma`](crate::Obstacle::gamma): 1 on the surface of the hard core), g = dGamma/dx (1/m;
 //! [`Obstacle::gradient`](crate::Obstacle::gradient)), r = x - r0 leads from its reference point to x (m;
 //! [`Obstacle::reference`](crate::Obstacle::reference)), and s is how fast its surface moves at x (m/s).
+//! (In a tree of overlapping cores r leans towards that of its root: [`Obstacle::hub`](crate::Obstacle::hub).)
 //!
 //! # One obstacle
 //!

@@ -2,6 +2,10 @@
 //!
 //! Every function that is not plain arithmetic is this crate's own or goes through `libm`, never through the
 //! platform's math library: then a PC and a microcontroller compute the same bits from the same inputs.
+//!
+//! Square roots are right to half a digit. Angles, sines and cosines are polynomials that minimise the largest error
+//! (Remez), as is e^x in `f32` and fixed point; in `f64` it is `libm`'s. In fixed point polar coordinates are found
+//! by CORDIC (Volder 1959). Errors are stated at the operations of [`Scalar`], those of fixed point all at [`Fixed`].
 
 mod angle;
 mod fixed;
@@ -42,7 +46,7 @@ pub trait Scalar:
 {
     /// Several numbers side by side: vector registers, where the machine has them.
     type Lanes: Lanes<Self, LANES>;
-    /// Distance from one to the next larger number.
+    /// Distance from one to the next larger number: the unit of rounding at 1, and everywhere in fixed point.
     const EPSILON: Self;
     /// Largest finite number.
     const MAX: Self;
