@@ -49,7 +49,7 @@
 //! | | `Fixed` | `WithFlow` |
 //! |---|---|---|
 //! | one layer | pushes along R(theta_2) r, into the core or off it | speeds the flow up along the surface |
-//! | several | subtracts a tangent of each | shortens u, at most to a fifth: it keeps its direction, so it crosses no surface it did not cross |
+//! | several | subtracts a tangent of each | shortens u, at most to a fifth; its direction stays |
 //! | at a shell | jumps by c | continuous (phi) |
 //! | where f = 0 | pushes on | no push: the attractor stays an equilibrium |
 //! | at a saddle point, u = 0 | pushes along R(theta_2) r | leaves to the fixed side |
