@@ -54,6 +54,8 @@
 //! | where f = 0 | pushes on | no push: the attractor stays an equilibrium |
 //! | at a saddle point, u = 0 | pushes along R(theta_2) r | leaves to the fixed side |
 //!
+//! A shortened flow crosses no surface that it did not cross; a tangent of one obstacle may point into its neighbour.
+//!
 //! # Constants
 //!
 //! | | value | what for |
