@@ -1,4 +1,9 @@
 //! The tick: position in, velocity out.
+//!
+//! [`Controller::tick`] has the order of its stages. A controller owns a [`Motion`], the [`Table`] of obstacles and
+//! the [`Settings`]; it has no clock (the time step is given), no I/O, allocates nothing and does not panic. Units
+//! are SI: m, m/s, m/s^2, s, rad. Vectors have D = 2 or 3 entries in the world's frame, in the one number type S
+//! throughout.
 
 use crate::adaptive::adapt;
 use crate::ds::Moving;
@@ -11,13 +16,13 @@ use crate::{
 /// How obstacles bend the motion, and what the robot may be asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings<S> {
-    /// Are soft layers soft? If not, this is the original method (k = 1).
+    /// Are soft layers soft? If not, this is the original method: every rho = ln k + 1 counts as 1.
     pub deformable: bool,
-    /// c of eqs. 15 and 27, m/s.
+    /// c, how hard soft layers push, m/s, 0 to 10; eqs. 15 and 27 of Chen et al., see [`adaptive`](crate::adaptive).
     pub gain: S,
-    /// Which way the push in a soft layer points.
+    /// Which way the push in a soft layer points, and what bounds it.
     pub steering: SteeringPolicy<S>,
-    /// Speed and acceleration.
+    /// Speed (m/s) and acceleration (m/s^2).
     pub limits: Limits<S>,
     /// What becomes of obstacles that are not updated.
     pub ageing: Ageing<S>,
@@ -26,7 +31,8 @@ pub struct Settings<S> {
 }
 
 impl<S: Scalar> Default for Settings<S> {
-    /// Deformable, c = 0.03 m/s, with the flow at most as fast again, guarded, and the defaults of [`Limits`], [`Ageing`] and [`Guard`].
+    /// Deformable, c = 0.03 m/s, with the flow at most as fast again, guarded, and the defaults of [`Limits`],
+    /// [`Ageing`] and [`Guard`].
     fn default() -> Self {
         Self {
             deformable: true,
@@ -44,25 +50,33 @@ impl<S: Scalar> Default for Settings<S> {
 pub enum SettingsError {
     /// c: 0 to 10 m/s.
     Gain,
-    /// theta_2 finite, or beta 0 to 10.
+    /// cos^2 theta_2 + sin^2 theta_2 = 1 to within 1e-3, or beta 0 to 10.
     Steering,
-    /// Above 0, at most 100 m/s.
+    /// [`Limits::speed`]: above 0, at most 100 m/s.
     Speed,
-    /// Above 0, at most 10^4 m/s^2.
+    /// [`Limits::acceleration`]: none, or above 0 and at most 10^4 m/s^2.
     Acceleration,
-    /// Above 0, at most 10^4 m/s^2.
+    /// [`Limits::deceleration`]: above 0, at most 10^4 m/s^2.
     Deceleration,
     /// Times 0 to 3600 s with hold no less than time to live, growth 0 to 10 m/s.
     Ageing,
-    /// Above 0, at most 1.
+    /// alpha: above 0, at most 1.
     Guard,
 }
 
 impl<S: Scalar> Settings<S> {
-    /// Checks every range.
+    /// Checks every range. A controller takes settings as they are: those that come from outside are to be checked
+    /// first.
     ///
     /// # Errors
-    /// The first setting out of its range, as [`SettingsError`] states it.
+    /// The first setting out of its range, or not a number, as [`SettingsError`] states it.
+    ///
+    /// ```
+    /// use pliant_core::{Limits, Settings, SettingsError};
+    /// let limits = Limits { speed: 0.0, ..Limits::default() };
+    /// assert_eq!(Settings { limits, ..Settings::<f32>::default() }.check(), Err(SettingsError::Speed));
+    /// assert_eq!(Settings::<f32>::default().check(), Ok(()));
+    /// ```
     pub fn check(&self) -> Result<(), SettingsError> {
         let from_zero = |x: S, high: f64| x >= S::zero() && x <= S::from_f64(high);
         let above_zero = |x: S, high: f64| x > S::zero() && x <= S::from_f64(high);
@@ -86,7 +100,7 @@ impl<S: Scalar> Settings<S> {
     }
 }
 
-/// Where the robot is: finite and within range.
+/// Where the robot is, x: D coordinates, m, finite and within +-1000 m ([`RANGE`](crate::RANGE)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotState<S: Scalar, const D: usize> {
     position: Vector<S, D>,
@@ -97,7 +111,7 @@ impl<S: Scalar, const D: usize> RobotState<S, D> {
     pub fn new(position: Vector<S, D>) -> Option<Self> {
         in_range(&position).then_some(Self { position })
     }
-    /// m
+    /// x, m.
     pub fn position(&self) -> &Vector<S, D> {
         &self.position
     }
@@ -106,38 +120,43 @@ impl<S: Scalar, const D: usize> RobotState<S, D> {
 /// What a tick asks of the robot, and what it saw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Command<S: Scalar, const D: usize> {
-    /// m/s
+    /// The velocity to drive with until the next tick, m/s: at most [`Limits::speed`] long.
     pub velocity: Vector<S, D>,
-    /// The least Gamma of all obstacles, above 1 outside every hard core; the largest number there is without obstacles.
+    /// The least Gamma of all obstacles and points at x, as they are at this sample, dimensionless: above 1 outside
+    /// every hard core; [`Scalar::MAX`] without obstacles.
     pub gamma: S,
-    /// The obstacle it belongs to.
+    /// The identifier of the obstacle it belongs to; `None` if there is none, or it is a point of the scan.
     pub nearest: Option<u16>,
-    /// Where the robot is.
+    /// Where x is, as far as cores and layers go.
     pub region: Region,
-    /// Conditions the command was computed under.
+    /// Conditions the command was computed under; [`Controller::tick`] says which stage sets which.
     pub status: Status,
 }
 
 /// The velocity after each stage of a tick that depends on nothing but the position, m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stages<S: Scalar, const D: usize> {
-    /// f(x)
+    /// f(x), the attractor's own velocity included; see [`ds`](crate::ds).
     pub nominal: Vector<S, D>,
-    /// Round the hard cores.
+    /// Bent round the hard cores; see [`modulation`](crate::modulation).
     pub modulated: Vector<S, D>,
-    /// Faster or slower in soft layers.
+    /// The same, faster or slower in soft layers; see [`adaptive`](crate::adaptive).
     pub adapted: Vector<S, D>,
-    /// The least Gamma of all obstacles.
+    /// The least Gamma of all obstacles and points, as in [`Command::gamma`].
     pub gamma: S,
-    /// The obstacle it belongs to.
+    /// Whose it is, as in [`Command::nearest`].
     pub nearest: Option<u16>,
     /// Where the point is.
     pub region: Region,
-    /// What was out of the ordinary.
+    /// [`Status::REFERENCE`] or nothing.
     pub status: Status,
 }
 
-/// One motion among at most `CAP` obstacles. See the crate's front page for an example.
+/// One motion among at most `CAP` (1 to 64; more does not compile) obstacles and one scan. See the crate's front page
+/// for an example.
+///
+/// What it remembers between ticks: the last command (for the acceleration limit), where attractor and obstacles are
+/// by now, and how old these are.
 #[derive(Clone, Debug)]
 pub struct Controller<S: Scalar, const D: usize, const CAP: usize> {
     motion: Moving<S, D>,
@@ -147,12 +166,48 @@ pub struct Controller<S: Scalar, const D: usize, const CAP: usize> {
 }
 
 impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
-    /// A controller at rest, without obstacles. `settings` are taken as they are: [`Settings::check`] those that come from outside.
+    /// A controller at rest, without obstacles, its attractor where the motion has it. `settings` are taken as they
+    /// are: [`Settings::check`] those that come from outside.
     pub fn new(motion: Motion<S, D>, settings: Settings<S>) -> Self {
         Self { motion: Moving::new(motion), settings, table: Table::new(), previous: Vector::zeros() }
     }
 
-    /// One step of `dt` seconds (not negative): the velocity to drive with from now on, and time passes for obstacles and attractor.
+    /// One step: the velocity to drive with for the next `dt` seconds, and these seconds pass for obstacles and
+    /// attractor.
+    ///
+    /// ```text
+    ///    stage      formula                                             sets
+    /// 1  nominal    f(x, t) = f0(x - d) + v      d, v: of the attractor
+    /// 2  modulated  speed sum_n w_n |xdot_n|, direction by angles       REFERENCE
+    /// 3  adapted    (1 - slower) u + faster      in soft layers
+    /// 4  limited    |u| <= speed, |u - u_previous| <= acceleration dt   SPEED_LIMITED, ACCELERATION_LIMITED
+    /// 5  time       c += v dt, Q turns, sizes grow, ages += dt          EXTRAPOLATED, HELD, CLUSTER
+    /// 6  finite     u = 0 unless every entry is a number                NOT_FINITE
+    /// 7  guard      nearest u, n.u >= -alpha room/dt, |u| <= speed      GUARDED, INFEASIBLE
+    /// ```
+    ///
+    /// The formulas in full, with their sources, are on the pages of [`ds`](crate::ds),
+    /// [`modulation`](crate::modulation), [`adaptive`](crate::adaptive), [`limits`](crate::limits),
+    /// [`table`](crate::table) and [`guard`](crate::guard); [`Status`] says what each flag means. Stages 1 to 4 see
+    /// attractor and obstacles as they are at this sample, the guard as they will be at the next one. gamma, nearest
+    /// and region are those of x at this sample; EXTRAPOLATED and HELD speak of ages before the step.
+    ///
+    /// `dt` is in s, not negative. With 0 no time passes, nothing is guarded, and a set acceleration leaves the
+    /// command as it was. A `dt` that is negative or not finite counts as 0, and the command is zero with
+    /// [`Status::NOT_FINITE`].
+    ///
+    /// ```
+    /// use nalgebra::Vector2;
+    /// use pliant_core::{Controller, Motion, RobotState, Settings, Status};
+    /// let motion = Motion::linear(Vector2::zeros(), 1.0).unwrap();
+    /// let mut controller: Controller<f32, 2, 4> = Controller::new(motion, Settings::default());
+    /// let state = RobotState::new(Vector2::new(0.2, 0.0)).unwrap();
+    /// assert_eq!(controller.tick(&state, 0.001).velocity, Vector2::new(-0.2, 0.0));
+    /// let far = RobotState::new(Vector2::new(2.0, 0.0)).unwrap();
+    /// let command = controller.tick(&far, 0.001);
+    /// assert!(command.velocity.norm() <= 0.5 && command.status == Status::SPEED_LIMITED);
+    /// assert!(controller.tick(&far, f32::NAN).status.contains(Status::NOT_FINITE));
+    /// ```
     pub fn tick(&mut self, state: &RobotState<S, D>, dt: S) -> Command<S, D> {
         let x = state.position();
         let (dt, valid) = time_step(dt);
@@ -178,8 +233,10 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         Command { velocity, gamma: stages.gamma, nearest: stages.nearest, region: stages.region, status }
     }
 
-    /// One step without a fresh state: from the last command towards rest, within the deceleration limit. `last` is where the robot was
-    /// last known to be. Nobody knows where it is now, so there is nothing to guard.
+    /// One step of `dt` seconds (as in [`Controller::tick`]) without a fresh state: from the last command towards
+    /// rest, by [`Limits::ramp_down`]. `last` is where the robot was last known to be, of which gamma, nearest and
+    /// region speak. Nobody knows where it is now, so there is nothing to guard. The status has [`Status::LATE`], and
+    /// what stage 5 sets.
     pub fn tick_late(&mut self, last: &RobotState<S, D>, dt: S) -> Command<S, D> {
         let mut around = Surroundings::new(&Vector::zeros());
         self.table.look(last.position(), self.settings.deformable, None, &mut around);
@@ -191,13 +248,14 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         Command { velocity, gamma: around.gamma, nearest: around.nearest, region: region(&around), status }
     }
 
-    /// Time passes without a command: obstacles and attractor move on and age.
+    /// `dt` seconds pass without a command: obstacles and attractor move on and age (stage 5), and the robot counts
+    /// as at rest.
     pub fn wait(&mut self, dt: S) {
         self.pass(time_step(dt).0);
         self.previous = Vector::zeros();
     }
 
-    /// Puts an obstacle into the table; see [`Table::upsert`].
+    /// Puts an obstacle into the table under its identifier, seen `age` seconds ago; see [`Table::upsert`].
     ///
     /// # Errors
     /// [`TableFull`]; then nothing has changed.
@@ -205,17 +263,19 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         self.table.upsert(id, obstacle, age, &self.settings.ageing)
     }
 
-    /// Puts a scan in the place of the one before; see [`Table::set_scan`].
+    /// Puts a scan, taken `age` seconds ago, in the place of the one before; see [`Table::set_scan`].
     pub fn set_scan(&mut self, scan: Scan<S, D>, age: S) {
         self.table.set_scan(scan, age, &self.settings.ageing);
     }
 
-    /// Puts the attractor at `position` (m), moving at `velocity` (m/s); false, and nothing changed, if one is out of range.
+    /// Puts the attractor at `position` (m), moving at `velocity` (m/s): from now on f(x, t) = f0(x - d(t)) +
+    /// velocity, with d how far it is from where the motion was learnt. False, and nothing changed, if a coordinate
+    /// is not finite, beyond +-1000 m, or faster than [`MAX_SPEED`](crate::obstacle::MAX_SPEED).
     pub fn aim(&mut self, position: &Vector<S, D>, velocity: &Vector<S, D>) -> bool {
         self.motion.aim(position, velocity)
     }
 
-    /// All stages that depend on the position alone; nothing changes.
+    /// Stages 1 to 3 of [`Controller::tick`], which depend on the position alone; nothing changes.
     pub fn evaluate(&self, state: &RobotState<S, D>) -> Stages<S, D> {
         let x = state.position();
         let (relative, nominal) = self.nominal(x);
@@ -224,7 +284,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         self.stages(&relative, nominal, &around)
     }
 
-    /// The velocity bent round every hard core, m/s, without what soft layers and limits do to it.
+    /// Stage 2, the velocity bent round every hard core, m/s, without what soft layers and limits do to it. Nothing
+    /// changes.
     pub fn modulated(&self, state: &RobotState<S, D>) -> Vector<S, D> {
         let x = state.position();
         let (_, nominal) = self.nominal(x);
@@ -233,7 +294,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         around.velocity
     }
 
-    /// Forgets the last command: the robot stands still.
+    /// Forgets the last command: u_previous = 0, the robot stands still.
     pub fn rest(&mut self) {
         self.previous = Vector::zeros();
     }

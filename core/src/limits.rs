@@ -1,15 +1,39 @@
-//! What the robot may be asked for.
+//! What the robot may be asked for: the fourth stage of a tick.
+//!
+//! With u the wanted velocity, u_previous the command of the last tick, v the largest speed and a the largest
+//! acceleration,
+//!
+//! ```text
+//! u  <- u min(1, v/|u|)                                      |u| <= v: scaled, direction kept
+//! du <- u - u_previous,  u <- u_previous + du min(1, a dt/|du|)  |du| <= a dt: the change is shortened
+//! u  <- u min(1, v/|u|)                                      once more: v may have been lowered since the last command
+//! ```
+//!
+//! all in the Euclidean norm, in m/s, m/s^2 and s. The second line acts where an acceleration is set, the third where
+//! the second did. A speed that is lowered holds at once, whatever acceleration it takes. This stage knows no
+//! obstacles: that a velocity that could not change fast enough does not end in a core is the
+//! [`guard`](crate::guard)'s part, which may exceed a, never v.
 
 use crate::{Scalar, Status, Vector, unit};
 
-/// Bounds on the commanded velocity.
+/// Bounds on the commanded velocity. They are taken as they are; [`Settings::check`](crate::Settings::check) checks
+/// them.
+///
+/// ```
+/// use nalgebra::Vector2;
+/// use pliant_core::{Limits, Status};
+/// let limits = Limits { speed: 0.5, acceleration: Some(10.0), ..Limits::default() };
+/// let (u, status) = limits.apply(Vector2::new(3.0, 4.0), &Vector2::zeros(), 0.001);
+/// assert!((u - Vector2::new(0.006, 0.008)).norm() < 1e-15); // 10 m/s^2 for 1 ms
+/// assert_eq!(status, Status::SPEED_LIMITED | Status::ACCELERATION_LIMITED);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits<S> {
-    /// Largest speed, m/s.
+    /// v, largest speed, m/s: above 0, at most 100.
     pub speed: S,
-    /// Largest change of velocity, m/s^2; `None` leaves it free.
+    /// a, largest change of velocity, m/s^2: above 0, at most 10^4; `None` leaves it free.
     pub acceleration: Option<S>,
-    /// How fast a command ramps to zero when the robot's state stays away, m/s^2.
+    /// How fast a command ramps to zero when the robot's state stays away, m/s^2: above 0, at most 10^4.
     pub deceleration: S,
 }
 
@@ -21,7 +45,9 @@ impl<S: Scalar> Default for Limits<S> {
 }
 
 impl<S: Scalar> Limits<S> {
-    /// The velocity nearest in direction (speed) and then in change (acceleration) to `wanted`, both in m/s.
+    /// `wanted` within the limits, where the last command was `previous` (both m/s) and `dt` >= 0 seconds pass: the
+    /// [module](self)'s three lines. With it [`Status::SPEED_LIMITED`] where the first line shortened,
+    /// [`Status::ACCELERATION_LIMITED`] where the second did. Not-a-number goes through.
     pub fn apply<const D: usize>(
         &self,
         wanted: Vector<S, D>,
@@ -42,7 +68,13 @@ impl<S: Scalar> Limits<S> {
         (shortened(previous + change, self.speed).0, status)
     }
 
-    /// The velocity one step of `dt` seconds nearer to standing still.
+    /// The velocity one step of `dt` >= 0 seconds nearer to standing still than `previous` (m/s):
+    ///
+    /// ```text
+    /// u = p - p min(1, deceleration dt/|p|),   p = previous min(1, speed/|previous|)
+    /// ```
+    ///
+    /// zero, exactly, once |p| <= deceleration dt.
     pub fn ramp_down<const D: usize>(&self, previous: &Vector<S, D>, dt: S) -> Vector<S, D> {
         let previous = shortened(*previous, self.speed).0;
         previous - shortened(previous, self.deceleration * dt).0
@@ -51,7 +83,8 @@ impl<S: Scalar> Limits<S> {
 
 /// The vector, at most `length` long, and whether it had to be shortened.
 fn shortened<S: Scalar, const D: usize>(v: Vector<S, D>, length: S) -> (Vector<S, D>, bool) {
-    // Halved, so that the length of the largest vector fits; divided first, so that in fixed point the ratio keeps its digits.
+    // Halved, so that the length of the largest vector fits; divided first, so that in fixed point the ratio keeps
+    // its digits.
     let half = S::from_f64(0.5);
     let halved = v * half;
     let (own, unit) = unit(&halved);

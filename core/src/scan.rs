@@ -1,23 +1,30 @@
 //! Raw range points as one obstacle: a planar scan or a depth patch, without a shape.
 //!
-//! Each point is a rigid ball with Gamma_i = |x - p_i|^2 / R^2. As in fast obstacle avoidance for lidar (Huber, Slotine & Billard 2022) there is
-//! one modulation from all points rather than one a point: with weights w_i proportional to 1/(Gamma_i - 1) and n_i = (x - p_i)/|x - p_i|,
+//! Each point p_i (m) is a rigid ball of radius R (m) at rest, with Gamma_i = |x - p_i|^2 / R^2. As in fast obstacle
+//! avoidance for lidar (Huber, Slotine & Billard 2022) there is one modulation from all points rather than one a
+//! point: with weights w_i proportional to 1/(Gamma_i - 1) and n_i = (x - p_i)/|x - p_i|,
 //!
 //! ```text
 //! nbar = sum_i w_i n_i,   xdot = M f with n = r = nbar/|nbar| and 1/G = |nbar| / min_i Gamma_i
 //! ```
 //!
-//! On the surface of a point's ball nbar is its normal and the flow slides along it; between points on two sides nbar is short and the flow
-//! passes through the middle unbent: there G is beyond what counts.
+//! On the surface of a point's ball nbar is its normal and the flow slides along it; between points on two sides nbar
+//! is short and the flow passes through the middle unbent: there G is beyond what counts. Where min_i Gamma_i <= 1, G
+//! is that itself. Among obstacles the scan counts as one more of them ([`modulation`](crate::modulation)) and has no
+//! soft layer; the [`guard`](crate::guard) keeps off each point, by a half-space with n = n_i and gap = |x - p_i| -
+//! R.
+//!
+//! A scan that is older than its time to live grows: R += (ageing growth) dt, up to its hold time (see [`Ageing`]);
+//! it does not move.
 
 use crate::obstacle::Sample;
 use crate::table::Ageing;
 use crate::{Scalar, Status, Vector, in_range, norm};
 
-/// Most points of a scan.
+/// Most points of a scan; thin out what has more.
 pub const MAX_POINTS: usize = 128;
 
-/// A set of range points, all seen at one time.
+/// A set of range points, all seen at one time. A [`Table`](crate::Table) holds one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scan<S: Scalar, const D: usize> {
     points: heapless::Vec<Vector<S, D>, MAX_POINTS>,
@@ -44,8 +51,8 @@ impl<S: Scalar, const D: usize> Default for Scan<S, D> {
 }
 
 impl<S: Scalar, const D: usize> Scan<S, D> {
-    /// Points (m), each to be kept away from by `radius` (m): half their spacing and more, so that nothing fits between them; plus the robot's
-    /// own size.
+    /// Points (m), each to be kept away from by `radius` (m): half their spacing and more, so that nothing fits
+    /// between them; plus the robot's own size.
     ///
     /// # Errors
     /// Too many points, or the first one out of its range.
@@ -77,7 +84,7 @@ impl<S: Scalar, const D: usize> Scan<S, D> {
         self.radius
     }
 
-    /// The least Gamma of all points; the largest number there is without points.
+    /// min_i |x - p_i|^2/R^2, dimensionless, at x in m: the least Gamma of all points; [`Scalar::MAX`] without points.
     pub fn gamma(&self, x: &Vector<S, D>) -> S {
         self.points.iter().fold(S::MAX, |least, p| least.min(self.gamma_of(p, x)))
     }

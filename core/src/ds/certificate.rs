@@ -5,7 +5,9 @@ use core::ops::Deref;
 use super::LpvDs;
 use crate::{Matrix, Scalar};
 
-/// A model whose certificate was checked. The only way to get one is [`LpvDs::certify`].
+/// A model whose certificate was checked: P = P' > 0 and A_k' P + P A_k < 0 for every k, so that V = (x - x*)' P (x -
+/// x*) decreases along f everywhere but at x*. The only way to get one is [`LpvDs::certify`]; the model itself is
+/// what it derefs to, and cannot be changed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certified<M> {
     model: M,
@@ -21,10 +23,10 @@ impl<M> Deref for Certified<M> {
 /// What the check found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate<S> {
-    /// A rate sigma, 1/s, for which A_k' P + P A_k <= -2 sigma P holds for every k, rounding included: V decreases at least
-    /// as fast as e^(-2 sigma t), the distance (in P's norm) as e^(-sigma t).
+    /// A rate sigma, 1/s, for which A_k' P + P A_k <= -2 sigma P holds for every k, rounding included: V decreases at
+    /// least as fast as e^(-2 sigma t), the distance (in P's norm) as e^(-sigma t).
     pub rate: S,
-    /// The component that limits the rate.
+    /// The component that limits the rate, counted from 0.
     pub slowest: usize,
 }
 
@@ -38,11 +40,12 @@ pub enum CertificateError {
 }
 
 impl<S: Scalar, const D: usize> LpvDs<S, D> {
-    /// Checks P = P' > 0 and A_k' P + P A_k < 0 for every k, in this model's own precision.
+    /// Checks P = P' > 0 and A_k' P + P A_k < 0 for every k, in this model's own precision (Figueroa & Billard, CoRL
+    /// 2018; eqs. 1-5 of Chen et al.).
     ///
-    /// Both are decided by elimination with every pivot positive after the diagonal was lowered by a bound on the rounding error of
-    /// the products and of the elimination (8 d^2 [`Scalar::rounding`] of the largest term, some twice what d <= 3 needs), so "holds" means
-    /// it holds for the exact values of the stored numbers.
+    /// Both are decided by elimination with every pivot positive after the diagonal was lowered by a bound on the
+    /// rounding error of the products and of the elimination (8 d^2 [`Scalar::rounding`] of the largest term, some
+    /// twice what d <= 3 needs), so "holds" means it holds for the exact values of the stored numbers.
     ///
     /// # Errors
     /// Which part fails, with its k.
@@ -75,8 +78,8 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
 }
 
 impl<S: Scalar, const D: usize> Certified<LpvDs<S, D>> {
-    /// The guaranteed rate of convergence, found by bisection between 0 and the largest rate any component could have.
-    /// Some thousands of operations: not for the tick.
+    /// The guaranteed rate of convergence, found by bisection: the largest sigma (1/s) with A_k' P + P A_k + 2 sigma
+    /// P < 0 for every k. Some thousands of operations: not for the tick.
     pub fn certificate(&self) -> Certificate<S> {
         let mut found = Certificate { rate: S::MAX, slowest: 0 };
         for (k, c) in self.components().iter().enumerate() {
@@ -114,8 +117,8 @@ fn rounding<S: Scalar, const D: usize>(terms: &Matrix<S, D>) -> S {
 
 /// Does elimination of m - shift I find positive pivots only? False for anything not-a-number.
 ///
-/// The largest diagonal element comes first. Then no factor of a positive definite matrix is larger than one, and errors do not grow: in fixed
-/// point, where they are absolute, as little as in floating point.
+/// The largest diagonal element comes first. Then no factor of a positive definite matrix is larger than one, and
+/// errors do not grow: in fixed point, where they are absolute, as little as in floating point.
 fn positive_definite<S: Scalar, const D: usize>(m: &Matrix<S, D>, shift: S) -> bool {
     let mut m = m - Matrix::<S, D>::identity() * shift;
     for k in 0..D {

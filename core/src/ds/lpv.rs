@@ -5,23 +5,43 @@ use crate::{Matrix, RANGE, Scalar, Vector, in_range, times};
 /// Most components a skill may have: what a device has room for.
 pub const MAX_COMPONENTS: usize = 16;
 
-/// One linear system and the Gaussian that says where it rules.
+/// One linear system and the Gaussian that says where it rules. [`ModelField`] has the ranges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Component<S: Scalar, const D: usize> {
     /// log pi_k - 1/2 log det Sigma_k; a constant common to all components may be left out.
     pub log_weight: S,
     /// mu_k, m.
     pub mean: Vector<S, D>,
-    /// W_k, 1/m: lower triangular with W'W = Sigma^-1, so that (x - mu)' Sigma^-1 (x - mu) = |W (x - mu)|^2 is never negative,
-    /// whatever the rounding.
+    /// W_k, 1/m: lower triangular with W'W = Sigma^-1, so that (x - mu)' Sigma^-1 (x - mu) = |W (x - mu)|^2 is never
+    /// negative, whatever the rounding.
     pub whitening: Matrix<S, D>,
     /// A_k, 1/s.
     pub a: Matrix<S, D>,
 }
 
-/// f(x) = sum_k gamma_k(x) A_k (x - x*), with the Lyapunov matrix P that is said to prove it stable.
+/// A learnt skill, with the Lyapunov matrix P that is said to prove it stable.
+///
+/// ```text
+/// f(x)    = sum_k gamma_k(x) A_k (x - x*)                                              m/s
+/// gamma_k = softmax_k( log pi_k - 1/2 log det Sigma_k - 1/2 |W_k (x - mu_k)|^2 )       W'W = Sigma^-1
+/// ```
+///
+/// The largest exponent is subtracted before exponentiating, so the weights sum to one however far x is from the
+/// data; a component whose exponent is more than 40 below the largest counts nothing. Figueroa & Billard, CoRL 2018;
+/// eqs. 1-5 of Chen et al.
 ///
 /// Built by [`LpvDs::new`], driven only once [`LpvDs::certify`] has found the proof to hold.
+///
+/// ```
+/// use nalgebra::{Matrix2, Vector2};
+/// use pliant_core::{Component, LpvDs};
+/// let part = |x, a| Component { log_weight: 0.0, mean: Vector2::new(x, 0.0), whitening: Matrix2::identity() * 20.0, a };
+/// let (left, right) = (part(-0.5, Matrix2::new(-1.0_f64, 1.0, -1.0, -1.0)), part(0.5, -Matrix2::identity()));
+/// let skill = LpvDs::new(Vector2::zeros(), Matrix2::identity(), &[left, right]).unwrap();
+/// // Ten standard deviations from the middle one system alone rules; in the middle both do.
+/// assert_eq!(skill.velocity(&Vector2::new(0.5, 0.0)), Vector2::new(-0.5, 0.0));
+/// assert!((skill.velocity(&Vector2::new(0.0, 0.2)) - Vector2::new(0.1, -0.2)).norm() < 1e-15);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct LpvDs<S: Scalar, const D: usize> {
     attractor: Vector<S, D>,
@@ -66,6 +86,7 @@ impl ModelError {
 }
 
 impl<S: Scalar, const D: usize> LpvDs<S, D> {
+    /// A skill from x* (m), P (D x D, symmetric; its scale does not matter) and 1 to [`MAX_COMPONENTS`] components.
     /// Checks ranges; whether the motion is stable is for [`LpvDs::certify`] to say.
     ///
     /// # Errors
@@ -103,9 +124,11 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
         Ok(Self { attractor, lyapunov, components })
     }
 
-    /// f(x), m/s. Zero at the attractor, finite for x within [`RANGE`](crate::RANGE).
+    /// f(x), m/s, at x in m. Zero at the attractor, finite for x within [`RANGE`](crate::RANGE). One exponential a
+    /// component.
     pub fn velocity(&self, x: &Vector<S, D>) -> Vector<S, D> {
-        // log(pi_k N_k), turned round and 1/32 as large, so that fixed point holds it up to 360 standard deviations away.
+        // log(pi_k N_k), turned round and 1/32 as large, so that fixed point holds it up to 360 standard deviations
+        // away.
         let mut depths = [S::zero(); MAX_COMPONENTS];
         let mut least = S::MAX;
         for (depth, c) in depths.iter_mut().zip(&self.components) {
@@ -119,8 +142,8 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
         let mut velocity = Vector::<S, D>::zeros();
         for (depth, c) in depths.iter().zip(&self.components) {
             let exponent = (least - *depth) * S::from_f64(32.0);
-            // A weight below e^-40 of the largest is less than the rounding of their sum, also in f64: the velocity misses that share of what this
-            // component alone would have.
+            // A weight below e^-40 of the largest is less than the rounding of their sum, also in f64: the velocity
+            // misses that share of what this component alone would have.
             if exponent < S::from_f64(-40.0) {
                 continue;
             }
@@ -136,7 +159,7 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
         &self.attractor
     }
 
-    /// P of V = (x - x*)' P (x - x*).
+    /// P of V = (x - x*)' P (x - x*), D x D.
     pub fn lyapunov(&self) -> &Matrix<S, D> {
         &self.lyapunov
     }

@@ -1,13 +1,23 @@
 //! Nominal motion: where the robot would go if nothing were in the way.
 //!
-//! A learnt skill is a linear-parameter-varying dynamical system (LPV-DS; Figueroa & Billard, CoRL 2018; eqs. 1-5 of Chen et al.)
+//! A learnt skill is a linear-parameter-varying dynamical system (LPV-DS; Figueroa & Billard, CoRL 2018; eqs. 1-5 of
+//! Chen et al.)
 //!
 //! ```text
-//! f(x) = sum_k gamma_k(x) A_k (x - x*)
+//! f(x)    = sum_k gamma_k(x) A_k (x - x*)                       m/s
+//! gamma_k = pi_k N(x; mu_k, Sigma_k) / sum_j pi_j N(x; mu_j, Sigma_j)
 //! ```
 //!
-//! with a quadratic Lyapunov function that proves it ends at its attractor x*. [`Certified`] is that proof as a type: nothing
-//! else can be driven.
+//! with a quadratic Lyapunov function that proves it ends at its attractor x*:
+//!
+//! ```text
+//! V(x) = (x - x*)' P (x - x*),   P = P' > 0,   A_k' P + P A_k < 0 for every k
+//! dV/dt = sum_k gamma_k (x - x*)' (A_k' P + P A_k) (x - x*) < 0      but at x*, for gamma_k >= 0 sum to 1
+//! ```
+//!
+//! [`Certified`] is that proof as a type: nothing else can be driven, but for [`Motion::linear`], f(x) = -gain (x -
+//! x*), which needs none. The proof is of the motion in continuous time, without obstacles. Where the attractor
+//! moves, [`Moving`] carries the motion along.
 
 mod certificate;
 mod lpv;
@@ -22,9 +32,9 @@ use crate::{Scalar, Vector, in_range};
 /// A motion that is stable: by construction, or by its certificate.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion<S: Scalar, const D: usize> {
-    /// f(x) = -gain (x - attractor).
+    /// f(x) = -gain (x - attractor), gain in 1/s.
     Linear(LinearDs<S, D>),
-    /// A learnt skill.
+    /// A learnt skill with its proof.
     Lpv(Certified<LpvDs<S, D>>),
 }
 
@@ -39,7 +49,8 @@ impl<S: Scalar, const D: usize> Motion<S, D> {
     /// Straight to `attractor` (m) at `gain` (1/s) times the distance.
     ///
     /// # Errors
-    /// The attractor is out of range, or the gain is not positive and at most 1000 1/s.
+    /// [`ModelField::Attractor`] where a coordinate is not within +-1000 m, [`ModelField::Gain`] where the gain is
+    /// not above 0 and at most 1000 1/s.
     ///
     /// ```
     /// use pliant_core::{Motion, Vector};
@@ -57,7 +68,7 @@ impl<S: Scalar, const D: usize> Motion<S, D> {
         Ok(Self::Linear(LinearDs { attractor, gain }))
     }
 
-    /// f(x), in m/s, at x in m.
+    /// f(x), in m/s, at x in m (within [`RANGE`](crate::RANGE)); zero at the attractor.
     pub fn velocity(&self, x: &Vector<S, D>) -> Vector<S, D> {
         match self {
             Self::Linear(ds) => (ds.attractor - x) * ds.gain,

@@ -1,8 +1,8 @@
 //! The last stage: whatever was asked for, the next sample is outside every hard core.
 //!
-//! For each hard core near enough to be reached, as it will be at the next sample (pose, growth and all), there is a half-space that holds the
-//! whole of it on its other side. With n its normal, gap its distance from the robot at x (of a large body less what rounding does to that), and room what
-//! is left beyond a skin,
+//! For each hard core near enough to be reached, as it will be at the next sample (pose, growth and all), there is a
+//! half-space that holds the whole of it on its other side. With n its normal, gap its distance from the robot at x
+//! (of a large body less what rounding does to that), and room what is left beyond a skin,
 //!
 //! ```text
 //! n.u >= -alpha room/dt   (room > 0)
@@ -10,15 +10,36 @@
 //! n.u >= -room/dt         (nearer, or behind: it will be here, so out of its way)
 //! ```
 //!
-//! keeps x + u dt out of a convex core exactly, not only in the limit dt -> 0: the half-space is that of the next sample, so no velocity of
-//! the obstacle and no second order of its turning enters. Of all u that fulfil every inequality and |u| <= speed the one nearest to what was
-//! wanted is driven. One half-space a core is enough to be outside and more than is needed: where none fulfils them all, those that hold the cores
-//! as seen from where the least violation leads are tried, without alpha. Where that fails too, the velocity that violates the worst inequality
-//! least is driven, and the status says so.
+//! keeps x + u dt out of a convex core exactly, not only in the limit dt -> 0: the half-space is that of the next
+//! sample, so no velocity of the obstacle and no second order of its turning enters. Of all u that fulfil every
+//! inequality and |u| <= speed the one nearest to what was wanted is driven. One half-space a core is enough to be
+//! outside and more than is needed: where none fulfils them all, those that hold the cores as seen from where the
+//! least violation leads are tried, without alpha. Where that fails too, the velocity that violates the worst
+//! inequality least is driven, and the status says so.
 //!
-//! What is exact: superellipsoids, boxes, cylinders, capsules, points of a scan, and polygons, by their convex pieces. A wall's free space is
-//! convex but for polygons; a half-space would let a step end outside of its curve, so it is moved inwards by what the curve can bend within
-//! one step.
+//! What is exact: superellipsoids, boxes, cylinders, capsules, points of a scan, and polygons, by their convex
+//! pieces. A wall's free space is convex but for polygons; a half-space would let a step end outside of its curve, so
+//! it is moved inwards by what the curve can bend within one step.
+//!
+//! n is a unit vector in the world's frame that points to where the robot may be; gap, room and skin are in m, u and
+//! speed in m/s, dt in s; alpha is [`Guard::approach`]. By shape, with Gamma, lambda and p from
+//! [`obstacle`](crate::obstacle) and [`shape`](crate::shape),
+//!
+//! ```text
+//! superellipsoid           n = g/|g|                    gap = n.(x - y),  y = c + (x - c) Gamma^(-1/2p)
+//! box, cylinder, capsule   n along grad lambda          gap = (lambda - 1)/|grad lambda|
+//! point of a scan          n = (x - p_i)/|x - p_i|      gap = |x - p_i| - R
+//! polygon                  one for each convex piece: off its nearest edge, or its nearest corner
+//! wall                     n inwards                    gap = the tangent's, less what the curve bends within speed dt
+//!
+//! room = gap - skin,   skin = max(2^-16 m, 16 eps max(1 m, |x_i|)),   eps: Scalar::EPSILON
+//! ```
+//!
+//! [`Status::GUARDED`](crate::Status::GUARDED) says that the command is another than was wanted,
+//! [`Status::INFEASIBLE`](crate::Status::INFEASIBLE) that there is no velocity that fulfils all. The guard may change the
+//! velocity by more than the acceleration limit, never beyond the speed. The papers have no such stage: it is ours, but
+//! for the way in which the nearest velocity is found ([`nearest`], known from ORCA, van den Berg et al. 2011). Polygons
+//! and walls in full are in section 7 of `docs/method.md`.
 
 mod program;
 
@@ -35,14 +56,14 @@ use crate::{Scalar, Vector};
 /// Most half-spaces of one tick; those that bind the least and find no room are kept by going more slowly.
 const CAPACITY: usize = 192;
 
-/// The least skin, m: 2^-16, what fixed point needs within a metre. The same for all numbers, so that in a wedge between two surfaces, where
-/// some micrometres of room decide how fast it goes on, they agree.
+/// The least skin, m: 2^-16, what fixed point needs within a metre. The same for all numbers, so that in a wedge
+/// between two surfaces, where some micrometres of room decide how fast it goes on, they agree.
 const SKIN: f64 = 1.0 / 65536.0;
 
 /// The share of the skin that one sample makes up for in its outer half: more than rounding takes, and no more of a push than that.
 const HOLD: f64 = 0.06;
 
-/// How the guard lets the robot come near.
+/// How the guard lets the robot come near: n.u >= -alpha room/dt. The [module](self) has the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guard<S> {
     /// alpha, above 0, at most 1: the share of the distance to a core that one sample may use up.
@@ -200,9 +221,10 @@ fn skin<S: Scalar, const D: usize>(x: &Vector<S, D>) -> S {
     (S::EPSILON * S::from_f64(16.0) * largest).max(S::from_f64(SKIN))
 }
 
-/// By how much the surface of a body of this size, m, counts as nearer, m: what rounding may do to the distance from it, as far as that is beyond [`SKIN`]. Scaled
-/// coordinates are in units of that size; in fixed point (where the square of epsilon is zero) the unit's reciprocal is as coarse as all other numbers, and
-/// what it is wrong by is so many times a metre squared.
+/// By how much the surface of a body of this size, m, counts as nearer, m: what rounding may do to the distance from
+/// it, as far as that is beyond [`SKIN`]. Scaled coordinates are in units of that size; in fixed point (where the
+/// square of epsilon is zero) the unit's reciprocal is as coarse as all other numbers, and what it is wrong by is so
+/// many times a metre squared.
 pub(crate) fn blur<S: Scalar>(size: S) -> S {
     let eight = S::EPSILON * S::from_f64(8.0) * size;
     let two = S::one() + S::one();

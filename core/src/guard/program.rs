@@ -9,7 +9,7 @@
 
 use crate::{Matrix, RANGE, Scalar, Vector, norm, unit};
 
-/// The velocities `{ u : normal.u >= offset }`.
+/// The velocities `{ u : normal.u >= offset }`, D entries in the world's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace<S: Scalar, const D: usize> {
     /// Unit vector into the half-space.
@@ -54,6 +54,9 @@ pub struct Solution<S: Scalar, const D: usize> {
 /// set of them that leaves nothing by less than that counts as feasible. A half-space without a direction (a normal of zero) or
 /// with an entry that is not a number is ignored; a `wanted` that is not finite counts as zero. The half-spaces may be left in
 /// another order; which one they came in does not matter to the result, but to rounding.
+///
+/// Found exactly, by the incremental scheme known from ORCA (van den Berg et al. 2011), with the most violated
+/// half-space always next. No errors: there is always an answer, and [`Solution::feasible`] says of which kind.
 ///
 /// ```
 /// use pliant_core::Vector;

@@ -46,8 +46,9 @@ fn explicit<const D: usize>(f: &Vector<f64, D>, o: &Sample<f64, D>) -> Vector<f6
 /// What rounding may do, m/s. With e the unit of rounding, and h what a number that is nothing may be wrong by (a step in fixed point):
 ///
 /// - u = f - s, 1/G and 1 + 1/G are wrong by one rounding each, their product and the sum with s by one more: 4 (e |.| + h) of |s| + 2 |u|;
-/// - g.u and g.r are wrong by D (e |g| |u| + h) and D (e |g| |r| + h), so their ratio by that over g.r, the second times |u| |g|/(g.r); |r| 2/G times
-///   this is what r is subtracted with, itself rounded: k = |g| |r| / (g.r), the condition of the basis, enters squared.
+/// - g.u and g.r are wrong by D (e |g| |u| + h) and D (e |g| |r| + h), so their ratio by that over g.r, the second
+///   times |u| |g|/(g.r); |r| 2/G times this is what r is subtracted with, itself rounded: k = |g| |r| / (g.r), the
+///   condition of the basis, enters squared.
 ///
 /// The explicit form is as wrong, in f64, with its inverse: k once more.
 fn bound<S: Scalar, const D: usize>(f: &Vector<f64, D>, o: &Sample<f64, D>) -> f64 {

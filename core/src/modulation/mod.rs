@@ -1,6 +1,141 @@
-//! Bending the nominal motion round hard cores.
+//! Bending the nominal motion round hard cores: the second stage of a tick.
 //!
-//! One obstacle: Khansari-Zadeh & Billard (2012), eqs. 7-10 of Chen et al., in closed form. Several: Huber, Billard & Slotine (2019).
+//! Nothing of this module is called from outside. [`Controller::tick`](crate::Controller::tick) drives by it,
+//! [`Controller::evaluate`](crate::Controller::evaluate) and [`Controller::modulated`](crate::Controller::modulated)
+//! show what it does at a place, [`Stages::modulated`](crate::Stages::modulated) is its result. This page says what
+//! that is.
+//!
+//! Vectors have d = 2 or 3 entries in the world's frame. x is the robot's place (m), f the nominal velocity there
+//! (m/s; see [`ds`](crate::ds)). Of obstacle n, Gamma is its dimensionless distance
+//! ([`Obstacle::gamma`](crate::Obstacle::gamma): 1 on the surface of the hard core), g = dGamma/dx (1/m;
+//! [`Obstacle::gradient`](crate::Obstacle::gradient)), r = x - r0 leads from its reference point to x (m;
+//! [`Obstacle::reference`](crate::Obstacle::reference)), and s is how fast its surface moves at x (m/s).
+//! (In a tree of overlapping cores r leans towards that of its root: [`Obstacle::hub`](crate::Obstacle::hub).)
+//!
+//! # One obstacle
+//!
+//! As seen by whoever stands on the surface, the velocity u = f - s is taken apart along r and along the tangent
+//! plane. The part along r becomes shorter, down to nothing at the surface, and the tangential one longer:
+//!
+//! ```text
+//! xdot_n = s + E D E^-1 (f - s)
+//! E = [ r/|r|, e_1, .., e_(d-1) ]                 e_i: any basis of the tangent plane, g.e_i = 0
+//! D = diag( 1 - 1/G, 1 + 1/G, .., 1 + 1/G )       G = max(Gamma, 1)
+//! ```
+//!
+//! Neither a basis nor an inverse is needed for it. The part of u along r is ((g.u)/(g.r)) r, whatever the basis, so
+//!
+//! ```text
+//! xdot_n = s + (1 + 1/G) u - (2/G) ((g.u)/(g.r)) r
+//! g.(xdot_n - s) = (1 - 1/G) g.u                  nothing on the surface: no flow through it
+//! ```
+//!
+//! in which neither g nor r need be of unit length. This closed form is what is evaluated. Far away, G to infinity,
+//! xdot_n = f. Inside a core G = 1: the flow has no part along r, and leads out no more than in.
+//!
+//! The eigenvalues are of Khansari-Zadeh & Billard (2012); that r leads from a reference point, from which a concave
+//! body is seen whole, is of Huber, Billard & Slotine (2019); these are eqs. 7-10 of Chen et al. A
+//! [`wall`](crate::ObstacleSpec::wall) has 1/gamma in the place of gamma, so that g points into its free space, where
+//! the reference point is: g.r is below zero there, and the formula is the same.
+//!
+//! **No split.** Where g.r (of a wall -g.r) <= 1e-6 |g|_1 |r|_1 (sums of absolute values), the reference point sees
+//! the surface edgewise or from behind, or x is the centre. Then xdot_n = s, and the tick says
+//! [`Status::REFERENCE`](crate::Status::REFERENCE). An obstacle whose Gamma reaches [`Scalar::FAR`] would not change
+//! a digit and is left out.
+//!
+//! # Obstacles that move
+//!
+//! ```text
+//! s(x) = v + w x (x - c) + b n                    n = g/|g|
+//! ```
+//!
+//! with v and w the linear (m/s) and angular (rad/s) velocity of the obstacle, c its centre, and b (m/s) how fast the
+//! surface comes towards free space because the body grows or ages ([`obstacle`](crate::obstacle) has b). The flow is
+//! tangential in the frame of the surface: what comes pushes the robot along. Passing what moves in its own frame is
+//! known from Khansari-Zadeh & Billard (2012) and Huber et al. (2019); b is ours.
+//!
+//! # Several obstacles
+//!
+//! Each bends f as if it were alone. The results are weighed by nearness,
+//!
+//! ```text
+//! w_n = (1/(Gamma_n - 1)) / sum_m (1/(Gamma_m - 1))
+//! ```
+//!
+//! (if any Gamma_n <= 1, those share the weight equally and the others have none), so that on a surface its own
+//! obstacle alone counts and nothing flows through it. Speeds and directions are averaged apart, for a mean of
+//! velocities could cancel to a standstill:
+//!
+//! ```text
+//! speed    = sum_n w_n |xdot_n|
+//! fhat     = f/|f|,   cos_n = xdot_n.fhat/|xdot_n|,   t_n = xdot_n/|xdot_n| - cos_n fhat
+//! kappa_n  = atan2(|t_n|, cos_n) t_n/|t_n|        0 where xdot_n or t_n is
+//! kappa    = sum_n w_n kappa_n                    rad, in the plane across f
+//! xdot     = speed (cos|kappa| fhat + sin|kappa| kappa/|kappa|)
+//! ```
+//!
+//! kappa_n says by which angle, and to which side, obstacle n turns the flow away from f. Weights and both means are
+//! of Huber et al. (2019). With no obstacle, xdot = f; with one, xdot = xdot_1.
+//!
+//! **Continuity among moving obstacles.** A direction opposite to f has its angle on either side, and f = 0 has none.
+//! Towards both the mean of angles fades into the plain mean of velocities:
+//!
+//! ```text
+//! z    = max( max_n over cos_n < 0 of 1 - |t_n|/(0.3 |cos_n|),   1 - |f|/(0.05 speed),   0 )
+//! xdot = (1 - z) speed (..) + z sum_n w_n xdot_n
+//! ```
+//!
+//! This is ours, as is all that is done where cores overlap (they share a reference point; see
+//! [`table`](crate::table)). A [`scan`](crate::scan) counts as one more obstacle.
+//!
+//! # What does not hold
+//!
+//! A robot that comes exactly head-on at a rigid obstacle stops at its surface: f and r are parallel there, and the
+//! modulation has a saddle point. A soft layer ([`adaptive`](crate::adaptive)) pushes the robot off it. In discrete
+//! time a velocity along a curved surface ends outside of the tangent plane, and a moving obstacle may cross: keeping
+//! samples out is the [`guard`](crate::guard)'s part.
+//!
+//! # Example
+//!
+//! At the surface the velocity is tangential, as seen from there, whatever else is near; away from it the closed form
+//! is E D E^-1.
+//!
+//! ```
+//! use nalgebra::{Matrix2, Vector2};
+//! use pliant_core::{Controller, Motion, Obstacle, ObstacleSpec, RobotState, Settings};
+//!
+//! let motion = Motion::linear(Vector2::zeros(), 1.0).unwrap(); // f = -x
+//! let mut controller: Controller<f64, 2, 2> = Controller::new(motion, Settings::default());
+//! // A ball of 5 cm that drifts, and one at rest.
+//! let [center, velocity] = [Vector2::new(0.3, 0.0), Vector2::new(0.0, 0.1)];
+//! let ball = Obstacle::new(ObstacleSpec { center, velocity, ..ObstacleSpec::default() }).unwrap();
+//! let other = Obstacle::new(ObstacleSpec { center: Vector2::new(0.3, 0.2), ..ObstacleSpec::default() }).unwrap();
+//! controller.upsert(1, ball.clone(), 0.0).unwrap();
+//! controller.upsert(2, other, 0.0).unwrap();
+//!
+//! for way in [Vector2::new(1.0, 0.2), Vector2::new(0.5, -1.0), Vector2::new(-1.0, 0.1)] {
+//!     let x = ball.surface(&way);
+//!     let seen = controller.evaluate(&RobotState::new(x).unwrap()).modulated - ball.surface_velocity(&x);
+//!     let normal = ball.gradient(&x).normalize();
+//!     assert!(normal.dot(&seen).abs() < 1e-9); // m/s
+//! }
+//!
+//! // With one obstacle, anywhere: E D E^-1 by hand.
+//! controller.table_mut().remove(2);
+//! let x = Vector2::new(0.4, 0.03);
+//! let (gamma, g, r, s) = (ball.gamma(&x), ball.gradient(&x), x - ball.reference(), ball.surface_velocity(&x));
+//! let e = Matrix2::from_columns(&[r.normalize(), Vector2::new(-g.y, g.x).normalize()]);
+//! let d = Matrix2::new(1.0 - 1.0 / gamma, 0.0, 0.0, 1.0 + 1.0 / gamma);
+//! let expected = s + e * d * e.try_inverse().unwrap() * (-x - s);
+//! assert!((controller.modulated(&RobotState::new(x).unwrap()) - expected).norm() < 1e-12);
+//! ```
+//!
+//! # Sources
+//!
+//! S. M. Khansari-Zadeh, A. Billard: *A Dynamical System Approach to Realtime Obstacle Avoidance*, Autonomous Robots
+//! 2012. L. Huber, A. Billard, J.-J. Slotine: *Avoidance of Convex and Concave Obstacles With Convergence Ensured
+//! Through Contraction*, IEEE RA-L 2019. L. Chen et al.: *Enhanced Robotic Navigation in Deformable Environments
+//! using Learning from Demonstration and Dynamic Modulation*.
 
 #![allow(
     clippy::needless_range_loop,
@@ -20,9 +155,10 @@ use crate::{Scalar, Vector, norm, unit};
 /// xdot = s + M (f - s),   M u = (1 + 1/G) u - (2/G) ((g.u)/(g.r)) r,   G = max(Gamma, 1)
 /// ```
 ///
-/// which is E D E^-1 with E = [r/|r|, tangents of g] and D = diag(1 - 1/G, 1 + 1/G, ...): u minus its part along r (split by the tangent
-/// plane) is tangential and stretched, the part along r is compressed. Neither g nor r need be of unit length. Where g.r is not positive,
-/// or so small that it may be rounding, there is no such split: then the answer is false, and s.
+/// which is E D E^-1 with E = [r/|r|, tangents of g] and D = diag(1 - 1/G, 1 + 1/G, ...): u minus its part along r
+/// (split by the tangent plane) is tangential and stretched, the part along r is compressed. Neither g nor r need be
+/// of unit length. Where g.r is not positive, or so small that it may be rounding, there is no such split: then the
+/// answer is false, and s.
 #[inline(always)]
 fn past<S: Scalar, L: Lanes<S, N>, const N: usize, const D: usize>(
     f: &[S; D],
@@ -94,8 +230,8 @@ pub(crate) struct Modulation<S: Scalar, const D: usize, const CAP: usize> {
     f: [S; D],
     /// The lane for the next obstacle.
     lane: usize,
-    /// The obstacles so far: how much one weighs is known when all are there, and what is done to them would not fit into registers along with
-    /// what is done to find them.
+    /// The obstacles so far: how much one weighs is known when all are there, and what is done to them would not fit
+    /// into registers along with what is done to find them.
     groups: heapless::Vec<Group<S, D>, CAP>,
 }
 
@@ -136,8 +272,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Modulation<S, D, CAP> {
         self.lane = LANES;
     }
 
-    /// The velocity past all of them and past one more, if there is one, m/s; and whether one of their reference points was unusable. `gamma` is
-    /// the least Gamma of those pushed.
+    /// The velocity past all of them and past one more, if there is one, m/s; and whether one of their reference
+    /// points was unusable. `gamma` is the least Gamma of those pushed.
     #[inline]
     pub fn finish(&self, gamma: S, last: Option<&Sample<S, D>>) -> (Vector<S, D>, bool) {
         let last = last.map(Group::new);
@@ -160,8 +296,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Modulation<S, D, CAP> {
     }
 }
 
-/// A weight proportional to 1/(Gamma - 1), scaled so that the nearest obstacle's is one: no overflow, and where the nearest is touched (its Gamma - 1,
-/// cut off at zero, is zero) those that are touched alone count.
+/// A weight proportional to 1/(Gamma - 1), scaled so that the nearest obstacle's is one: no overflow, and where the
+/// nearest is touched (its Gamma - 1, cut off at zero, is zero) those that are touched alone count.
 #[inline(always)]
 pub(crate) fn weight<S: Scalar>(distance: S, nearest: S) -> S {
     if distance > nearest { nearest / distance } else { S::one() }
@@ -179,10 +315,12 @@ fn opposite<S: Scalar>(ahead: S, aside: S) -> S {
     S::one() + aside.abs() / (ahead * S::from_f64(OPPOSITE))
 }
 
-/// Mean speed, and mean direction as a mean of angles to f: averaging velocities themselves could cancel to a standstill.
+/// Mean speed, and mean direction as a mean of angles to f: averaging velocities themselves could cancel to a
+/// standstill.
 ///
-/// A direction opposite to f has its angle on either side, and where f vanishes there is nothing to measure from. Both happen only among
-/// moving obstacles; towards them the mean of angles fades into the plain mean of velocities, so that the velocity is continuous.
+/// A direction opposite to f has its angle on either side, and where f vanishes there is nothing to measure from.
+/// Both happen only among moving obstacles; towards them the mean of angles fades into the plain mean of velocities,
+/// so that the velocity is continuous.
 #[derive(Clone, Copy, Debug)]
 struct DirectionalMean<S: Scalar, const D: usize> {
     f: [S; D],
@@ -194,7 +332,8 @@ struct DirectionalMean<S: Scalar, const D: usize> {
     nearest: S,
     sum: S,
     speed: S,
-    /// sum of w_n angle_n (unit vector across f towards xdot_n); in the plane the first is all there is, counter-clockwise.
+    /// sum of w_n angle_n (unit vector across f towards xdot_n); in the plane the first is all there is,
+    /// counter-clockwise.
     kappa: Vector<S, D>,
     /// sum of w_n xdot_n
     plain: Vector<S, D>,

@@ -14,10 +14,12 @@ pub(crate) struct Abreast<S: Scalar, const D: usize> {
 }
 
 impl<S: Scalar, const D: usize> Abreast<S, D> {
-    /// Is there anything to gain? Not with one lane, nor in space with `f64`, of which more numbers have to be gathered than registers hold.
+    /// Is there anything to gain? Not with one lane, nor in space with `f64`, of which more numbers have to be
+    /// gathered than registers hold.
     pub const WORTH_IT: bool = LANES > 1 && size_of::<[S; D]>() <= 16;
 
-    /// How obstacles of the usual kind look from x, with the bits that [`Obstacle::sample`] gives; `None` if one is of another, or too far to matter.
+    /// How obstacles of the usual kind look from x, with the bits that [`Obstacle::sample`] gives; `None` if one is
+    /// of another, or too far to matter.
     #[inline(always)]
     pub fn new(few: [&Obstacle<S, D>; LANES], x: &Vector<S, D>) -> Option<Self> {
         if !few.iter().all(|o| o.usual) {

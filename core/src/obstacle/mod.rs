@@ -1,13 +1,49 @@
 //! One obstacle: a hard core, perhaps in a soft layer, that moves.
 //!
+//! # Gamma
+//!
 //! ```text
 //! Gamma(x)   = gamma(q_i / (eta_i L_i))    <= 1: hard
 //! Gamma_k(x) = gamma(q_i / (rho_i L_i))    <= 1: soft, where not hard        q = Q' (x - c)
 //! ```
 //!
-//! with gamma and the lengths L from the [`shape`](crate::shape): for an ellipsoid Gamma = sum_i |q_i / (eta_i a_i)|^2p, after
-//! Khansari-Zadeh & Billard (2012) with the safety factors eta inside, so that the inflated surface is the one that cannot be penetrated.
-//! Gamma_k is eq. 13 of Chen et al., with ln k + 1 = rho. A wall has 1/gamma, and both its surfaces come inwards: L_i/eta_i, L_i/rho_i.
+//! Both are dimensionless; x and c in m, in the world's frame; q in m, in the obstacle's. gamma and the lengths L (m)
+//! are from the [`shape`](crate::shape): for an ellipsoid Gamma = sum_i |q_i / (eta_i a_i)|^2p, after Khansari-Zadeh
+//! & Billard (2012) with the safety factors eta inside, so that the inflated surface is the one that cannot be
+//! penetrated. Gamma_k is eq. 13 of Chen et al., with ln k + 1 = rho; eta does not scale it, and where eta >= rho
+//! there is no soft layer: margin wins over softness. A wall has 1/gamma, and both its surfaces come inwards:
+//! L_i/eta_i, L_i/rho_i.
+//!
+//! # Growth and ageing
+//!
+//! Each semi-extent e_i of the shape (semi-axes, half sides, radius, half length with the radius; of a polygon, for
+//! both axes, the distance of its nearest edge from the origin) has by now grown by `grown`, the growth rate times
+//! the time. Ageing (see [`Ageing`](crate::Ageing)) has added `aged` to the hard core alone:
+//!
+//! ```text
+//! Gamma:    eta_i becomes eta_i (1 + grown/e_i) + aged/e_i         wall: 1/eta_i becomes (1 + grown/e_i)/eta_i - aged/e_i
+//! Gamma_k:  rho_i becomes rho_i (1 + grown/e_i)                    wall: 1/rho_i becomes (1 + grown/e_i)/rho_i
+//! ```
+//!
+//! No semi-extent shrinks below [`Scalar::MIN_AXIS`], no wall's scale by ageing below a tenth. Of a core smaller than
+//! as given the reference point is nearer to the centre in proportion.
+//!
+//! # Motion
+//!
+//! ```text
+//! c <- c + v dt,   Q <- Q turned by w dt           between sightings, each tick
+//! s(x) = v + w x (x - c) + b n,   n = g/|g|        surface velocity at x, m/s
+//! ```
+//!
+//! b (m/s, along n, positive towards free space) is how fast the surface moves because the core grows or ages, never
+//! less towards free space than it really does: where the rate brings the surface there, rate times eta_max times 1
+//! for an ellipsoid with p = 1, sqrt(d) for other shapes, and for a polygon the length of the vector of its largest
+//! |coordinates| over e; where it retreats, rate times min e/max e. (Of a wall eta counts as 1 where it comes, and
+//! divides where it retreats.) Ageing always comes, and eta does not scale it. [`Obstacle::surface_velocity`] is s
+//! without b n.
+//!
+//! Growth, ageing and b are ours. Errors: [`ObstacleError`] names the field at fault; an [`Obstacle`] that was made
+//! has no other way to fail.
 
 mod abreast;
 mod motion;
@@ -49,7 +85,8 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     soft_until: S,
     /// From the centre to the reference point, in the world's frame, m: as long as nothing turns it stays.
     offset: Vector<S, D>,
-    /// From there to the reference point of the tree's root, in the world's frame, m; zero where there is none. And is there one?
+    /// From there to the reference point of the tree's root, in the world's frame, m; zero where there is none. And
+    /// is there one?
     lean: Vector<S, D>,
     leans: bool,
     /// Is it an ellipsoid with p = 1, and no wall? The usual case goes a short way.
@@ -61,18 +98,21 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     /// Does it move, turn or grow? Does it turn?
     moves: bool,
     spins: bool,
-    /// How fast the surface moves along the shape's normal because it grows, m/s: never less towards the free side than it really does.
+    /// How fast the surface moves along the shape's normal because it grows, m/s: never less towards the free side
+    /// than it really does.
     swelling: S,
     /// 1/radius of the largest ball inside, 1/m.
     slimmest: S,
     /// By how much the surface counts as nearer to the guard for the body's size, m; and the gauge so far out.
     blur: S,
     rim: S,
-    /// The lengths at which hard scaled coordinates are one before ageing, m, and how much longer each becomes for each metre of it.
+    /// The lengths at which hard scaled coordinates are one before ageing, m, and how much longer each becomes for
+    /// each metre of it.
     young: Vector<S, D>,
     per_metre: Vector<S, D>,
-    /// What follows from the shape alone: the lengths at which its scaled coordinates are one, m, and those that growth is measured by, m; how much
-    /// the surface moves where these become a metre longer, at most and at least, m; 1/radius of the largest ball inside, in scaled coordinates.
+    /// What follows from the shape alone: the lengths at which its scaled coordinates are one, m, and those that
+    /// growth is measured by, m; how much the surface moves where these become a metre longer, at most and at least,
+    /// m; 1/radius of the largest ball inside, in scaled coordinates.
     unit: Vector<S, D>,
     extent: Vector<S, D>,
     most: S,
@@ -80,7 +120,8 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     inner: S,
     body: Body<S, D>,
     spec: ObstacleSpec<S, D>,
-    /// The reference point in the obstacle's frame, its own or one shared with obstacles it overlaps; and u = q * this when it was chosen.
+    /// The reference point in the obstacle's frame, its own or one shared with obstacles it overlaps; and u = q *
+    /// this when it was chosen.
     local_reference: Vector<S, D>,
     chosen_at: Vector<S, D>,
     /// `lean` in the obstacle's frame.
@@ -107,7 +148,7 @@ pub(crate) struct Outlook<'a, S: Scalar, const D: usize> {
 }
 
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
-    /// Checks every field.
+    /// Checks every field. It is at rest in time: a [`Table`](crate::Table) carries it on.
     ///
     /// # Errors
     /// The first field that is out of its range, as [`ObstacleError`] states it.
@@ -158,22 +199,38 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         Ok(obstacle)
     }
 
-    /// Where and how it is now: the specification, with the pose carried on to the present.
+    /// Where and how it is now: the specification, with centre and rotation carried on to the present, and motion
+    /// zero once it is held. The shape is as it was given: growth and ageing are not in it.
     pub fn spec(&self) -> &ObstacleSpec<S, D> {
         &self.spec
     }
 
-    /// Gamma(x), dimensionless, with safety factors, growth and ageing; the largest number there is at the centre of a wall.
+    /// Gamma(x), dimensionless, at x (m, world's frame), with safety factors, growth and ageing: below 1 in the hard
+    /// core, 1 on its surface, above 1 outside; 0 at the centre, at that of a wall [`Scalar::MAX`].
+    ///
+    /// ```text
+    /// Gamma(x) = gamma(q_i/(eta_i L_i)), of a wall 1/gamma(q_i eta_i/L_i)
+    /// ```
     pub fn gamma(&self, x: &Vector<S, D>) -> S {
         self.level(&self.scaled(x)).0
     }
 
-    /// Gamma_k(x), dimensionless.
+    /// Gamma_k(x), dimensionless, at x (m, world's frame), with growth: at most 1 in the soft layer (and in the
+    /// core). Of a rigid obstacle, rho = 1, it is that of its shape without safety factor and ageing.
+    ///
+    /// ```text
+    /// Gamma_k(x) = gamma(q_i/(rho_i L_i)), of a wall 1/gamma(q_i rho_i/L_i)
+    /// ```
     pub fn gamma_soft(&self, x: &Vector<S, D>) -> S {
         self.level(&self.local(x).component_mul(&self.soft)).0
     }
 
-    /// dGamma/dx, 1/m. Near a polygon's corners, where Gamma has a kink, the blend of both sides that the method uses.
+    /// g = dGamma/dx, 1/m, D entries in the world's frame; zero at the centre. Near a polygon's corners, where Gamma
+    /// has a kink, the blend of both sides that the method uses. Of a wall it points into the free space.
+    ///
+    /// ```text
+    /// g = Q diag(1/(eta_i L_i)) gamma'(u),   of a wall -Q diag(eta_i/L_i) gamma'(u)/gamma(u)^2
+    /// ```
     pub fn gradient(&self, x: &Vector<S, D>) -> Vector<S, D> {
         let u = self.scaled(x);
         let (gamma, direction) = self.body.level(&self.spec.shape, &u);
@@ -187,8 +244,9 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         if self.spec.wall { -gradient / (gamma * gamma) } else { gradient }
     }
 
-    /// The point of the hard surface (safety factors, growth and ageing included) that the ray from the centre along `direction` (world's
-    /// frame, any length) meets, m.
+    /// The point of the hard surface (safety factors, growth and ageing included) that the ray from the centre along
+    /// `direction` (world's frame, any length) meets, m: c + direction/lambda with lambda the gauge of the direction.
+    /// The centre for a direction of zero.
     ///
     /// ```
     /// use pliant_core::{Obstacle, ObstacleSpec, Vector};
@@ -199,18 +257,18 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.on_surface(direction, &self.hard)
     }
 
-    /// The same for the soft layer.
+    /// The same for the soft layer, Gamma_k = 1: m.
     pub fn soft_surface(&self, direction: &Vector<S, D>) -> Vector<S, D> {
         self.on_surface(direction, &self.soft)
     }
 
-    /// The velocity of the obstacle's matter at x, m/s: v + w x (x - c), without growth.
+    /// The velocity of the obstacle's matter at x (m, world's frame), m/s: v + w x (x - c), without growth.
     pub fn surface_velocity(&self, x: &Vector<S, D>) -> Vector<S, D> {
         self.spec.velocity + times(&self.spec.spin, &(x - self.spec.center))
     }
 
-    /// Calls `keep(n, gap)` for half-spaces n.delta >= -gap (n of unit length, world's frame; gap in m) of displacements from a place that keep
-    /// out of the hard core (a wall: inside).
+    /// Calls `keep(n, gap)` for half-spaces n.delta >= -gap (n of unit length, world's frame; gap in m) of
+    /// displacements from a place that keep out of the hard core (a wall: inside).
     pub(crate) fn keep_out(&self, from: &Outlook<'_, S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
         if self.plain {
             return self.keep_out_of_ellipsoid(from.at, keep);
@@ -228,7 +286,8 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         });
     }
 
-    /// The same for an ellipsoid with p = 1: the half-space where the ray from the centre leaves the surface, as for other superellipsoids.
+    /// The same for an ellipsoid with p = 1: the half-space where the ray from the centre leaves the surface, as for
+    /// other superellipsoids.
     fn keep_out_of_ellipsoid(&self, x: &Vector<S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
         let one = S::one();
         let u = self.scaled(x);

@@ -16,7 +16,8 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.carry_on(dt, S::zero());
     }
 
-    /// The same, and makes the core larger by ageing, at the rate it [`ages`](Self::ages) at. The soft layer stays where it is: margin wins over softness.
+    /// The same, and makes the core larger by ageing, at the rate it [`ages`](Self::ages) at. The soft layer stays
+    /// where it is: margin wins over softness.
     #[inline(always)]
     pub(crate) fn advance_and_age(&mut self, dt: S) {
         self.carry_on(dt, self.ageing);
@@ -67,7 +68,8 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.inflate();
     }
 
-    /// From now on it grows by ageing, at `rate` m/s: what its surface velocity says, and what [`advance_and_age`](Self::advance_and_age) does.
+    /// From now on it grows by ageing, at `rate` m/s: what its surface velocity says, and what
+    /// [`advance_and_age`](Self::advance_and_age) does.
     pub(crate) fn ages(&mut self, rate: S) {
         if rate != self.ageing {
             self.ageing = rate;

@@ -8,7 +8,8 @@ use crate::{Scalar, Vector, is_zero, times, transposed_times};
 const KEPT: f64 = 0.1;
 
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
-    /// The reference point in the world's frame, m: its own, or one that it shares with obstacles it overlaps.
+    /// The reference point in the world's frame as it is now, m, from which r of the modulation leads: its own, or
+    /// one that it shares with obstacles it overlaps (see [`table`](crate::table)).
     pub fn reference(&self) -> Vector<S, D> {
         self.spec.center + self.offset
     }
@@ -31,14 +32,22 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         times(&self.spec.rotation, &direction.zip_map(&self.hard, |d, hard| d * (hard / most)))
     }
 
-    /// The reference point of the root of the tree it belongs to (world's frame, m), where r leads from as far as it can.
+    /// The reference point of the root of the tree of overlapping cores it belongs to (world's frame, m); `None`
+    /// without one. r leads from there as far as it can:
+    ///
+    /// ```text
+    /// r - s h,   s = min(1, 0.9 (g.r)/(g.h))      1 where g.h <= 0, 0 where g.r <= 0
+    /// ```
+    ///
+    /// with r from its own reference point and h from there to the hub, so that g.r keeps at least a tenth of what it
+    /// was.
     pub fn hub(&self) -> Option<Vector<S, D>> {
         self.leans.then(|| self.reference() + self.lean)
     }
 
-    /// How far r leans, in a tree, from the own reference point (0) to the root's (1): as far as leaves n.r the share [`KEPT`] of what it is from its
-    /// own. Where the tree is seen from its root all members have r in common, and no notch is a pocket. `outward` is n, of any length, `own` r
-    /// from its own.
+    /// How far r leans, in a tree, from the own reference point (0) to the root's (1): as far as leaves n.r the share
+    /// [`KEPT`] of what it is from its own. Where the tree is seen from its root all members have r in common, and no
+    /// notch is a pocket. `outward` is n, of any length, `own` r from its own.
     #[inline(always)]
     pub(super) fn leaning(&self, outward: &Vector<S, D>, own: &Vector<S, D>) -> S {
         let along = |v: &Vector<S, D>| S::dot(outward.as_slice(), v.as_slice());

@@ -13,26 +13,32 @@ pub const MAX_RATIO: f64 = 100.0;
 /// What an obstacle is made from; [`Obstacle::new`](crate::Obstacle::new) checks it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObstacleSpec<S: Scalar, const D: usize> {
-    /// c, m.
+    /// c, m: each coordinate within +-1000 m.
     pub center: Vector<S, D>,
-    /// Q, from the obstacle's frame to the world's.
+    /// Q, D x D, from the obstacle's frame to the world's: x = c + Q q. Orthonormal to 1e-3, right-handed; see
+    /// [`rotation`].
     pub rotation: Matrix<S, D>,
-    /// The hard core.
+    /// The hard core, in the obstacle's frame, without safety factors.
     pub shape: Shape<S, D>,
     /// Turned inside out: the shape is the free space, what is around it a wall.
     pub wall: bool,
-    /// rho >= 1 along each axis of the frame: the soft layer's surface is the core's, this much larger (of a wall, smaller); 1 is rigid.
-    /// For one stiffness k: ln k + 1.
+    /// rho >= 1 along each axis of the frame: the soft layer's surface is the core's, this much larger (of a wall,
+    /// smaller); 1 is rigid. From 1 to [`MAX_RATIO`]; of a polygon the same along both axes. For one stiffness k of
+    /// Chen et al.: rho = ln k + 1.
     pub soft_ratio: Vector<S, D>,
-    /// eta >= 1, the safety factor along each axis.
+    /// eta >= 1, the safety factor along each axis of the frame: the hard core's surface is the shape's, this much
+    /// larger (of a wall, smaller). From 1 to [`MAX_RATIO`]; of a polygon the same along both axes.
     pub margin: Vector<S, D>,
-    /// The reference point in the obstacle's frame, m; inside the hard core (of a wall, inside the free space).
+    /// r0, the reference point in the obstacle's frame, m: strictly inside the shape as given (of a wall, inside the
+    /// free space), and where all of a polygon is seen from.
     pub reference: Vector<S, D>,
-    /// Of the centre, m/s.
+    /// v, of the centre, m/s, in the world's frame: each entry within +-[`MAX_SPEED`].
     pub velocity: Vector<S, D>,
-    /// Angular velocity as a skew matrix, rad/s; see [`rotation::planar_spin`] and [`rotation::spatial_spin`].
+    /// w, the angular velocity as a skew D x D matrix in the world's frame, rad/s: each entry within +-[`MAX_SPEED`];
+    /// see [`rotation::planar_spin`] and [`rotation::spatial_spin`].
     pub spin: Matrix<S, D>,
-    /// How fast each semi-extent becomes longer (below zero: shorter), m/s. The soft layer grows with the core.
+    /// How fast each semi-extent becomes longer (below zero: shorter), m/s, within +-[`MAX_SPEED`]. The soft layer
+    /// grows with the core.
     pub growth: S,
 }
 
@@ -55,7 +61,7 @@ impl<S: Scalar, const D: usize> Default for ObstacleSpec<S, D> {
     }
 }
 
-/// The field for which a specification is refused.
+/// The field for which a specification is refused. Not-a-number is out of every range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ObstacleError {
     /// Not finite, or beyond +-1000 m.
@@ -76,7 +82,7 @@ pub enum ObstacleError {
     SoftRatio,
     /// Not between 1 and 100, or not the same along both axes of a polygon.
     Margin,
-    /// Not inside the hard core, or from there the polygon is not seen whole.
+    /// Gamma of the shape as given is not below 1 there, or from there the polygon is not seen whole.
     Reference,
     /// Not finite, or beyond [`MAX_SPEED`].
     Velocity,

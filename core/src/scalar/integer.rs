@@ -135,8 +135,9 @@ pub(super) fn rounded(x: i32, by: u32) -> i32 {
 
 /// n 2^BITS / d to the nearest, ties upwards; 2^31 where it is more or d = 0. Both n and d are at most 2^31.
 ///
-/// A reciprocal good to 26 digits and never too large gives a quotient that is never too large either, short by up to 21, and by no more than
-/// 2 where it is below 2^27. What it leaves is thus below 2^32, so 32 bits of it are all of it, and says which whole number is the nearest.
+/// A reciprocal good to 26 digits and never too large gives a quotient that is never too large either, short by up to
+/// 21, and by no more than 2 where it is below 2^27. What it leaves is thus below 2^32, so 32 bits of it are all of
+/// it, and says which whole number is the nearest.
 pub(super) fn quotient<const BITS: u32>(n: u32, d: u32) -> u32 {
     if n >> (31 - BITS) >= d {
         return 1 << 31;
@@ -276,8 +277,8 @@ fn leading(square: u64) -> (u32, u32) {
     }
 }
 
-/// The length of a vector of up to three coordinates, to 26 digits and at most 2^31 - 1, and the vector of that direction whose length is 2^29;
-/// nothing for zero.
+/// The length of a vector of up to three coordinates, to 26 digits and at most 2^31 - 1, and the vector of that
+/// direction whose length is 2^29; nothing for zero.
 pub(super) fn unit<const D: usize>(v: [i32; D]) -> (u32, [i32; D]) {
     let square = v.iter().fold(0_u64, |sum, x| sum.wrapping_add(square(*x)));
     if square == 0 {
@@ -293,7 +294,8 @@ pub(super) fn unit<const D: usize>(v: [i32; D]) -> (u32, [i32; D]) {
     (length, v.map(|x| high(x << places, inverse)))
 }
 
-/// sqrt(2^32 h) for h from 2^30 on, to 26 digits: h times Newton's reciprocal root y (3 - h y^2)/2, and its remainder. With it y, to 14 digits.
+/// sqrt(2^32 h) for h from 2^30 on, to 26 digits: h times Newton's reciprocal root y (3 - h y^2)/2, and its
+/// remainder. With it y, to 14 digits.
 #[inline]
 fn normal_root(h: u32) -> (u32, u32) {
     // y in 2^-15 is the reciprocal root of h/2^32, at first by the best parabola, to 2.4 %.

@@ -1,7 +1,11 @@
 //! The numbers the method computes with.
 //!
-//! Every function that is not plain arithmetic is this crate's own or goes through `libm`, never through the platform's math
-//! library: then a PC and a microcontroller compute the same bits from the same inputs.
+//! Every function that is not plain arithmetic is this crate's own or goes through `libm`, never through the
+//! platform's math library: then a PC and a microcontroller compute the same bits from the same inputs.
+//!
+//! Square roots are right to half a digit. Angles, sines and cosines are polynomials that minimise the largest error
+//! (Remez), as is e^x in `f32` and fixed point; in `f64` it is `libm`'s. In fixed point polar coordinates are found
+//! by CORDIC (Volder 1959). Errors are stated at the operations of [`Scalar`], those of fixed point all at [`Fixed`].
 
 mod angle;
 mod fixed;
@@ -42,17 +46,18 @@ pub trait Scalar:
 {
     /// Several numbers side by side: vector registers, where the machine has them.
     type Lanes: Lanes<Self, LANES>;
-    /// Distance from one to the next larger number.
+    /// Distance from one to the next larger number: the unit of rounding at 1, and everywhere in fixed point.
     const EPSILON: Self;
     /// Largest finite number.
     const MAX: Self;
-    /// An obstacle with a larger Gamma is too far to matter: in floating point it would not change a digit of the velocity, in
-    /// fixed point Gamma is near the end of the range.
+    /// An obstacle with this Gamma or a larger one is too far to matter: in floating point, 1e15, it would not change
+    /// a digit of the velocity; in fixed point, 1000, Gamma is near the end of the range.
     const FAR: Self;
-    /// Smallest hard semi-axis of an obstacle, m: its reciprocal has to fit.
+    /// Smallest hard semi-axis of an obstacle, m: 1e-4 in floating point, 0.002 in fixed point, where its reciprocal
+    /// has to fit.
     const MIN_AXIS: Self;
 
-    /// The nearest number of this type.
+    /// The nearest number of this type; beyond the range its end, or infinity for a type that has it.
     fn from_f64(x: f64) -> Self;
     /// The same number as `f64`, exactly.
     fn to_f64(self) -> f64;
@@ -75,17 +80,18 @@ pub trait Scalar:
     ///
     /// Error, rad: 9e-16 (`f64`), 2e-7 (`f32`), 1.5e-6 ([`Fixed`]).
     fn atan2(self, x: Self) -> Self;
-    /// Length and angle (as [`Scalar::atan2`]) of the point (x, y): for little more than the angle. Error of the length: 2e-16 (`f64`), 2e-7 (`f32`) of
-    /// it, half a step and 4e-8 of it ([`Fixed`]).
+    /// Length and angle (as [`Scalar::atan2`]) of the point (x, y): for little more than the angle. Error of the
+    /// length: 2e-16 (`f64`), 2e-7 (`f32`) of it, half a step and 4e-8 of it ([`Fixed`]).
     fn polar(x: Self, y: Self) -> (Self, Self);
     /// A bound on the rounding error of one product of terms of this size.
     fn rounding(size: Self) -> Self;
     /// Euclidean length, for components whose squares need not fit in fixed point.
     fn norm(components: &[Self]) -> Self;
-    /// sqrt(hypotenuse^2 - leg^2), zero where that is no number: the other leg, for lengths whose squares need not fit, or have no digits, in fixed point.
+    /// sqrt(hypotenuse^2 - leg^2), zero where that is no number: the other leg, for lengths whose squares need not
+    /// fit, or have no digits, in fixed point.
     fn other_leg(hypotenuse: Self, leg: Self) -> Self;
-    /// The length of a vector of up to three components, and the vector over it; zero where that is no number. Error of the length in fixed point: half a
-    /// step, and 1.5e-8 of it.
+    /// The length of a vector of up to three components, and the vector over it; zero where that is no number. Error
+    /// of the length in fixed point: half a step, and 1.5e-8 of it.
     #[inline(always)]
     fn unit<const D: usize>(v: [Self; D]) -> (Self, [Self; D]) {
         let length = Self::norm(&v);

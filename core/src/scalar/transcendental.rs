@@ -63,8 +63,9 @@ pub(super) fn sin_cos(x: i32) -> (i32, i32) {
 
 /// Length and angle of (x, y); the angle is zero at the origin.
 ///
-/// CORDIC (Volder 1959): the point is turned towards the first axis by angles whose tangents are powers of two, which takes shifts and sums only,
-/// and becomes longer by what is known beforehand. Once the angle is small, it is the ratio of the coordinates.
+/// CORDIC (Volder 1959): the point is turned towards the first axis by angles whose tangents are powers of two, which
+/// takes shifts and sums only, and becomes longer by what is known beforehand. Once the angle is small, it is the
+/// ratio of the coordinates.
 pub(super) fn polar(x: i32, y: i32) -> (i32, i32) {
     /// atan(2^-i) for i from 1 on, in 2^-29
     const TURNS: [i32; 8] =

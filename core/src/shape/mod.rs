@@ -1,13 +1,28 @@
 //! The shapes a hard core may have, and the one small trait through which the method sees them.
 //!
-//! A shape lives in its own frame, about the origin, and is star-shaped there: each ray from the origin meets its surface once, at a distance
-//! R. The method looks at it through scaled coordinates u (one factor an axis: safety factors, soft layers, growth), in which
+//! A shape lives in its own frame, about the origin, and is star-shaped there: each ray from the origin meets its
+//! surface once, at a distance R. The method looks at it through scaled coordinates u (one factor an axis: safety
+//! factors, soft layers, growth), in which
 //!
 //! ```text
 //! gamma(u) = (|u| / R(u))^2p          below 1 inside, 1 on the surface, above 1 outside
 //! ```
 //!
-//! with p = 1 for all but the superellipsoid. Turned inside out, as a wall, the same shape has 1/gamma.
+//! with p = 1 for all but the superellipsoid: dimensionless, homogeneous of degree 2p. lambda = |u|/R(u) is the
+//! gauge. Turned inside out, as a wall, the same shape has 1/gamma. Unscaled, for q in the shape's frame (m):
+//!
+//! | shape | gauge |
+//! |---|---|
+//! | [ellipsoid](Shape::Ellipsoid), semi-axes a_i | lambda^2p = sum_i abs(q_i/a_i)^2p |
+//! | [box](Shape::Box), [cylinder](Shape::Cylinder), [capsule](Shape::Capsule) | sum_i max(t_i - lambda h_i, 0)^2 = (lambda R)^2 |
+//! | [polygon](Shape::Polygon), edge from v to w | lambda = a + b where q = a v + b w, a, b >= 0 |
+//!
+//! with R the radius of edges, h the half extents less R, and t_i = abs(q_i), of cylinder and capsule t = (abs((q_1,
+//! q_2)), abs(q_3)). The first is of Khansari-Zadeh & Billard (2012), star shapes by R(u) of Huber, Billard & Slotine
+//! (2019).
+//!
+//! An [`Obstacle`](crate::Obstacle) checks its shape; every length is in m, from [`Scalar::MIN_AXIS`] to 1000 m,
+//! where nothing else is said.
 
 mod polygon;
 mod rounded;
@@ -27,40 +42,51 @@ pub(crate) use superellipsoid::root;
 /// Largest curvature exponent p.
 pub const MAX_CURVATURE: u8 = 8;
 
-/// The shape of a hard core, in its own frame; lengths in metres.
+/// The shape of a hard core, in its own frame about the origin; lengths in metres.
+///
+/// ```
+/// use nalgebra::{Vector2, Vector3};
+/// use pliant_core::{Obstacle, ObstacleError, ObstacleSpec, Shape};
+/// let pallet = Shape::Box { half: Vector2::new(0.6, 0.4), rounding: 0.02 };
+/// let pallet = Obstacle::new(ObstacleSpec { shape: pallet, ..ObstacleSpec::default() }).unwrap();
+/// assert!((pallet.gamma(&Vector2::new(0.9_f64, 0.0)) - 1.5_f64.powi(2)).abs() < 1e-12); // (|q|/R)^2
+/// let thick = Shape::Cylinder { radius: 0.1_f64, half_length: 0.2, rounding: 0.15 };
+/// let thick = ObstacleSpec::<f64, 3> { shape: thick, ..ObstacleSpec::default() };
+/// assert_eq!(Obstacle::new(thick).unwrap_err(), ObstacleError::Rounding);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape<S: Scalar, const D: usize> {
     /// sum_i |q_i / a_i|^2p = 1: an ellipsoid for p = 1, nearly a box for p = [`MAX_CURVATURE`].
     Ellipsoid {
-        /// a, the semi-axes.
+        /// a, the D semi-axes.
         axes: Vector<S, D>,
-        /// p
+        /// p, the curvature exponent: a whole number from 1 to [`MAX_CURVATURE`].
         curvature: u8,
     },
     /// A box whose edges and corners are rounded; with a rounding of half the shorter side, a stadium.
     Box {
-        /// Half of each side.
+        /// Half of each of the D sides, rounded edges included.
         half: Vector<S, D>,
-        /// Radius of the edges, above zero and at most the least half side.
+        /// Radius of the edges, at most the least half side.
         rounding: S,
     },
     /// A cylinder about the third axis whose rims are rounded. Only in 3-D.
     Cylinder {
         /// Radius.
         radius: S,
-        /// Half of its length.
+        /// Half of its length, rounded rims included.
         half_length: S,
-        /// Radius of the rims, above zero, at most the radius and half the length.
+        /// Radius of the rims, at most the radius and half the length.
         rounding: S,
     },
     /// A segment of the third axis with everything within `radius` of it. Only in 3-D.
     Capsule {
         /// Radius.
         radius: S,
-        /// Half of the segment's length; the capsule is `radius` longer on both sides.
+        /// Half of the segment's length, from 0; the capsule is `radius` longer on both sides.
         half_length: S,
     },
-    /// A polygon, star-shaped about the origin. Only in 2-D.
+    /// A polygon, star-shaped about the origin: once round it, counter-clockwise, seen whole from there. Only in 2-D.
     Polygon(Polygon<S>),
 }
 
@@ -93,7 +119,7 @@ pub(crate) struct Place<'a, S: Scalar, const D: usize> {
 }
 
 impl<S: Scalar, const D: usize> Shape<S, D> {
-    /// A superellipsoid; see [`Shape::Ellipsoid`].
+    /// An ellipsoid, p = 1, with these semi-axes, m; see [`Shape::Ellipsoid`].
     pub fn ellipsoid(axes: Vector<S, D>) -> Self {
         Self::Ellipsoid { axes, curvature: 1 }
     }
@@ -128,7 +154,7 @@ impl<S: Scalar, const D: usize> Shape<S, D> {
         }
     }
 
-    /// Half of the shape's extent along each axis of its frame, m.
+    /// Half of the shape's extent along each axis of its frame, m; of a polygon the largest |coordinate|.
     pub fn extent(&self) -> Vector<S, D> {
         match self {
             Self::Ellipsoid { axes, .. } => *axes,
@@ -146,8 +172,9 @@ impl<S: Scalar, const D: usize> Shape<S, D> {
         }
     }
 
-    /// What growth is measured by, m: an extent that becomes longer by a metre makes its axis so much longer in proportion. Scaled by one factor an
-    /// axis, a polygon would uncover parts of itself, so it has one for both: the distance of the nearest edge, and no edge moves less.
+    /// What growth is measured by, m: an extent that becomes longer by a metre makes its axis so much longer in
+    /// proportion. Scaled by one factor an axis, a polygon would uncover parts of itself, so it has one for both: the
+    /// distance of the nearest edge, and no edge moves less.
     pub(crate) fn growing_extent(&self) -> Vector<S, D> {
         match self {
             Self::Polygon(polygon) => {
@@ -221,8 +248,8 @@ impl<S: Scalar, const D: usize> Body<S, D> {
         }
     }
 
-    /// At most 1 where the whole surface is seen from, so that a reference point may be there: gamma, but of a polygon. And the direction in which
-    /// it grows.
+    /// At most 1 where the whole surface is seen from, so that a reference point may be there: gamma, but of a
+    /// polygon. And the direction in which it grows.
     pub fn sight(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> (S, Vector<S, D>) {
         match (self, shape) {
             (Self::Polygon { scale, .. }, Shape::Polygon(polygon)) => polygon.at_scale(*scale).sight(u),

@@ -11,8 +11,8 @@ use crate::{Scalar, Vector, is_zero, unit};
 /// sum_i max(t_i - lambda h_i, 0)^2 = (lambda r)^2,   t_i = |u_i|, or for a cylinder t = (|(u_1, u_2)|, |u_3|)
 /// ```
 ///
-/// a quadratic equation once it is known which terms are positive: i is not where the left side, at lambda = t_i/h_i, is still larger. With t and h cut
-/// to the terms that are, and c = t/|t|, its root is
+/// a quadratic equation once it is known which terms are positive: i is not where the left side, at lambda = t_i/h_i,
+/// is still larger. With t and h cut to the terms that are, and c = t/|t|, its root is
 ///
 /// ```text
 /// lambda = |t| / (c.h + sqrt(r^2 - |c x h|^2))

@@ -15,8 +15,8 @@ impl Superellipsoid {
         (0..self.p).fold(S::zero(), |sum, _| sum + S::one())
     }
 
-    /// What a displacement of this length may add to the tangent of gamma, which is convex with second derivatives up to 2p(2p - 1) within the surface;
-    /// and a fifth of that more.
+    /// What a displacement of this length may add to the tangent of gamma, which is convex with second derivatives up
+    /// to 2p(2p - 1) within the surface; and a fifth of that more.
     fn bend<S: Scalar>(&self, stride: S) -> S {
         let p = self.powers::<S>();
         S::from_f64(1.2) * p * (p + p - S::one()) * stride * stride
@@ -72,8 +72,8 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
                 keep(normal(at.u.map(|u| -slope(u, self.p))), gap * unit);
                 return;
             }
-            // A step is longer than the bend allows: |delta_i| <= s, with s times the gauge of (1, 1, ...) what the gauge of u lacks to one, for
-            // no gauge of a sum is more than the sum of the gauges.
+            // A step is longer than the bend allows: |delta_i| <= s, with s times the gauge of (1, 1, ...) what the
+            // gauge of u lacks to one, for no gauge of a sum is more than the sum of the gauges.
             let room = (one - root(gamma, self.p)) / root(at.u.iter().fold(S::zero(), |sum, _| sum + one), self.p);
             for i in 0..D {
                 let side = |sign: S| Vector::from_fn(|j, _| if i == j { sign } else { S::zero() });
@@ -116,7 +116,8 @@ pub(crate) fn root<S: Scalar>(gamma: S, p: u8) -> S {
         return target;
     }
     let powers = (0..p).fold(S::zero(), |sum, _| sum + S::one());
-    // From sqrt(gamma) itself a large one would take hundreds of steps, each a share of 1/p: so from its root of the power of two next below p.
+    // From sqrt(gamma) itself a large one would take hundreds of steps, each a share of 1/p: so from its root of the
+    // power of two next below p.
     let mut y = target.max(S::one());
     let mut power = p;
     while power > 1 {

@@ -117,7 +117,8 @@ fn kept_out<const D: usize>(
     Ok(kept)
 }
 
-/// The one half-space of a rounded body in numbers S, at the point so far (m) beyond its surface along `way`; and in f64, of the same numbers.
+/// The one half-space of a rounded body in numbers S, at the point so far (m) beyond its surface along `way`; and in
+/// f64, of the same numbers.
 fn gaps<S: Scalar, const D: usize>(shape: [f64; D], rounding: f64, way: [f64; D], beyond: f64) -> [f64; 2] {
     let half = Vector::from(shape).map(S::from_f64);
     let least = half.iter().fold(S::MAX, |m, x| m.min(*x));

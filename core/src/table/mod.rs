@@ -1,4 +1,28 @@
-//! The obstacles there are, in room for a fixed number of them.
+//! The obstacles there are, in room for a fixed number of them, and what becomes of them between two sightings.
+//!
+//! Whoever sees obstacles puts them in by an identifier ([`Table::upsert`]), as often as they are seen. In between,
+//! every tick of dt seconds carries each one on by what was said of it ([`Table::advance`]). How far that is trusted
+//! depends on its age, how long ago it was seen ([`Ageing`]):
+//!
+//! ```text
+//! age < time to live           c += v dt,  Q turns by w dt,  every semi-extent += growth dt
+//! time to live <= age < hold   the same, and the hard core's semi-extents += (ageing growth) dt:  EXTRAPOLATED
+//! hold <= age                  it stays where it is, as large as it is:                           HELD
+//! ```
+//!
+//! In the second line its surface velocity has the rate of ageing along its normal too, so that the modulation sees
+//! it come. What ageing has added is gone with the next sighting. The soft layer does not age: margin wins over
+//! softness. A scan's radius grows by the same rule. All of this is ours.
+//!
+//! # Overlapping cores
+//!
+//! When the table changes, and only then, cores that overlap are found and get reference points together: a common
+//! point of all of them where there is one, so that the flow goes round their union as round one body (after Huber,
+//! Billard & Slotine 2019). Others are gone through as a tree, from a root whose reference point all refer to as far
+//! as it sees them. Where a tree or ring has no point in common the flow may end in a notch, and [`Status::CLUSTER`]
+//! says so. The points move on with their obstacles until the table changes again. A change costs a bounded number of
+//! evaluations of Gamma, up to some thousands where many cores overlap: it is made between two ticks, and may take
+//! longer than one. How points are searched is in section 4 of `docs/method.md`.
 
 mod ageing;
 mod clusters;
@@ -30,11 +54,11 @@ impl<S: Scalar, const D: usize> Entry<S, D> {
     pub fn id(&self) -> u16 {
         self.id
     }
-    /// As it is now.
+    /// As it is now: pose and size carried on to the present.
     pub fn obstacle(&self) -> &Obstacle<S, D> {
         &self.obstacle
     }
-    /// Seconds since it was seen.
+    /// How long ago it was seen, s; it stops at [`Ageing::hold`].
     pub fn age(&self) -> S {
         self.age
     }
@@ -51,9 +75,11 @@ fn nearer<S: Scalar, T>(one: (S, T), best: (S, T)) -> (S, T) {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TableFull;
 
-/// At most `CAP` (up to 64) obstacles by their identifiers, and one scan.
+/// At most `CAP` (1 to 64; more does not compile) obstacles by their identifiers, and one scan. The [module](self)
+/// says how they age and go together.
 ///
-/// Obstacles whose hard cores overlap share a reference point, found when the table changes and carried along with them until it changes again.
+/// Obstacles whose hard cores overlap share a reference point, found when the table changes and carried along with
+/// them until it changes again.
 ///
 /// ```
 /// use pliant_core::{Ageing, Obstacle, ObstacleSpec, Table, TableFull};
@@ -85,11 +111,13 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         Self { entries: heapless::Vec::new(), clusters: Clusters::new(), scan: Scan::default(), revision: 0 }
     }
 
-    /// Puts an obstacle in, or in the place of the one with the same identifier. `age` is how many seconds ago it was seen as
-    /// described; it is carried on to now as [`Table::advance`] would have done.
+    /// Puts an obstacle in, or in the place of the one with the same identifier. `age` is how many seconds ago it was
+    /// seen as described: a number, below 0 counted as 0 and above the hold time as that. It is carried on to now as
+    /// [`Table::advance`] would have done (one that turns in at most 100 steps). Cores that overlap get their
+    /// reference points.
     ///
     /// # Errors
-    /// [`TableFull`]; then nothing has changed.
+    /// [`TableFull`] where `CAP` others are there already; then nothing has changed.
     pub fn upsert(
         &mut self,
         id: u16,
@@ -126,7 +154,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         Ok(())
     }
 
-    /// Takes an obstacle out; was it there?
+    /// Takes an obstacle out, and lets those that it overlapped find their reference points anew; was it there?
     pub fn remove(&mut self, id: u16) -> bool {
         let Some(index) = self.entries.iter().position(|e| e.id == id) else {
             return false;
@@ -138,7 +166,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         true
     }
 
-    /// Puts a scan in the place of the one before; `age` is how many seconds ago it was taken. One without points takes it away.
+    /// Puts a scan in the place of the one before; `age` is how many seconds ago it was taken, as in
+    /// [`Table::upsert`]. One without points takes it away. Scans take no part in what overlaps.
     pub fn set_scan(&mut self, mut scan: Scan<S, D>, age: S, ageing: &Ageing<S>) {
         scan.carry(age, ageing);
         self.scan = scan;
@@ -153,7 +182,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         self.revision = self.revision.wrapping_add(1);
     }
 
-    /// Counts the changes made by others (not the passage of time), so that a command can name the table it was computed from.
+    /// Counts the changes made by others (not the passage of time), so that a command can name the table it was
+    /// computed from.
     pub fn revision(&self) -> u32 {
         self.revision
     }
@@ -178,8 +208,9 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         &self.scan
     }
 
-    /// Lets `dt` seconds pass: obstacles move on, and the ones nobody spoke of grow, then stop. How old they were before, and whether
-    /// they go together, as status flags.
+    /// Lets `dt` >= 0 seconds pass: obstacles move on, and the ones nobody spoke of grow, then stop; the
+    /// [module](self) has the formulas. How old they were before the step, as [`Status::EXTRAPOLATED`] and
+    /// [`Status::HELD`], and [`Status::CLUSTER`] where some overlap without a common point.
     pub fn advance(&mut self, dt: S, ageing: &Ageing<S>) -> Status {
         let mut status = self.scan.status(ageing) | self.clusters.status();
         let fresh = ageing.time_to_live.min(ageing.hold);
@@ -217,8 +248,9 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         }
     }
 
-    /// How all obstacles look from x, into `around`, which is new: its velocity is bent round them all. With `deformable` false every soft layer is ignored. `reach` is how far
-    /// the robot may see its way ahead, m, and the time step, s, if anything within it is to be listed.
+    /// How all obstacles look from x, into `around`, which is new: its velocity is bent round them all. With
+    /// `deformable` false every soft layer is ignored. `reach` is how far the robot may see its way ahead, m, and the
+    /// time step, s, if anything within it is to be listed.
     #[inline]
     pub(crate) fn look(
         &self,

@@ -1,6 +1,7 @@
 //! Keeping a point out of a polygon: a half-space for each of its convex pieces.
 //!
-//! Off a piece, behind any line that has all of it behind, keeps off it exactly; off every piece, off the whole, corners and notches included.
+//! Off a piece, behind any line that has all of it behind, keeps off it exactly; off every piece, off the whole,
+//! corners and notches included.
 
 use super::pieces::{Piece, Pieces, Run};
 use super::{MAX_VERTICES, dot, plane, size, sub, vector};
@@ -27,8 +28,8 @@ pub(super) fn keep_out<S: Scalar, const D: usize>(
     }
 }
 
-/// A polygon's edges (of a wall: of all that is outside) as they look from the point to keep out, where that wishes to go, and the share of its
-/// distance that it may use up.
+/// A polygon's edges (of a wall: of all that is outside) as they look from the point to keep out, where that wishes
+/// to go, and the share of its distance that it may use up.
 struct View<S> {
     edges: heapless::Vec<Seen<S>, MAX_VERTICES>,
     wall: bool,
@@ -78,7 +79,8 @@ enum Nearest<'a, S> {
 
 impl<S: Scalar> View<S> {
     fn look(&mut self, edges: impl Iterator<Item = ([S; 2], [S; 2])>) {
-        // A corner counts where both edges say that it is nearer than they are: a line through it has both behind it then, to the last digit.
+        // A corner counts where both edges say that it is nearer than they are: a line through it has both behind it
+        // then, to the last digit.
         let rounding = S::EPSILON * S::from_f64(8.0);
         for (from, to) in edges {
             let (corner, along) = (sub(self.u, from), sub(to, from));
@@ -110,7 +112,8 @@ impl<S: Scalar> View<S> {
         }
     }
 
-    /// The line to keep behind for a piece: moved out to where it has every corner of that behind it, whatever rounding made of its direction.
+    /// The line to keep behind for a piece: moved out to where it has every corner of that behind it, whatever
+    /// rounding made of its direction.
     fn side(&self, piece: &Piece) -> Option<Side<S>> {
         let chosen = self.chosen(piece)?;
         let held = self.held(piece, chosen);
@@ -118,8 +121,8 @@ impl<S: Scalar> View<S> {
         if held.gap + rounding >= chosen.gap {
             return Some(held);
         }
-        // A short edge may be turned so far that its line is no longer the piece's. Then another line will do: along another edge, across the way from a
-        // corner, or one through the origin.
+        // A short edge may be turned so far that its line is no longer the piece's. Then another line will do: along
+        // another edge, across the way from a corner, or one through the origin.
         let mut best = self.best();
         best.consider(held);
         self.each(&piece.outline, |edge| best.consider(self.held(piece, edge.line)));
@@ -172,8 +175,8 @@ impl<S: Scalar> View<S> {
         Some(best.best?.side)
     }
 
-    /// The sides along the rays through a piece's first and last corners, and across the way to the origin where all of it is beyond that. Only whoever
-    /// is beyond one keeps behind it: from within, the way out is over an edge.
+    /// The sides along the rays through a piece's first and last corners, and across the way to the origin where all
+    /// of it is beyond that. Only whoever is beyond one keeps behind it: from within, the way out is over an edge.
     fn beside(&self, piece: &Run, mut consider: impl FnMut(Side<S>)) {
         let (mut first, mut last) = (None, None);
         self.each(piece, |edge| {
@@ -220,8 +223,8 @@ impl<S: Scalar> View<S> {
     }
 }
 
-/// Of the lines that u is beyond, the one that cuts its wish the least (that leaves most of the share that may be used up); if it is beyond none, the
-/// one it is least behind.
+/// Of the lines that u is beyond, the one that cuts its wish the least (that leaves most of the share that may be
+/// used up); if it is beyond none, the one it is least behind.
 struct Best<S> {
     wish: [S; 2],
     share: S,

@@ -14,14 +14,16 @@ pub const MAX_VERTICES: usize = 12;
 const BLEND: f64 = 0.2;
 /// By how much of the neighbour's gauge along that share it may fall at most: the further the neighbour turns away, the shorter the share.
 const FALL: f64 = 0.8;
-/// A reference point is behind every edge's line by at least a fifth of the origin's distance from it. FALL/8, what the blend may take of that, is less.
+/// A reference point is behind every edge's line by at least a fifth of the origin's distance from it. FALL/8, what
+/// the blend may take of that, is less.
 pub(crate) const SIGHT: f64 = 0.8;
 
 /// A polygon, star-shaped about the origin: [`Polygon::new`] checks the number of corners, an obstacle the rest.
 ///
-/// Between two corners v and w a point is u = alpha v + beta w, and its gauge is alpha + beta. The gradient of the gauge is the edge's normal
-/// (scaled), which would jump at a corner; near one it is blended with that of the next edge, so that the velocity is continuous. Where that edge
-/// turns away steeply it is so only very near, for the normal must lead away from every reference point there may be.
+/// Between two corners v and w a point is u = alpha v + beta w, and its gauge is alpha + beta. The gradient of the
+/// gauge is the edge's normal (scaled), which would jump at a corner; near one it is blended with that of the next
+/// edge, so that the velocity is continuous. Where that edge turns away steeply it is so only very near, for the
+/// normal must lead away from every reference point there may be.
 ///
 /// ```
 /// use pliant_core::{Obstacle, ObstacleSpec, Vector, shape::{Polygon, Shape}};
@@ -54,8 +56,8 @@ impl<S: Scalar> Edge<S> {
         (cross(from, to) > S::zero() && distance > S::zero()).then_some(Self { from, to, along, normal })
     }
 
-    /// Its share in the normal of a neighbour, at this share of that one's length from the corner between them; `opposite` is the neighbour's
-    /// other corner. A half at the corner, fading over a band.
+    /// Its share in the normal of a neighbour, at this share of that one's length from the corner between them;
+    /// `opposite` is the neighbour's other corner. A half at the corner, fading over a band.
     fn share(&self, away: S, opposite: [S; 2]) -> S {
         let (band, fall) = (S::from_f64(BLEND), S::one() - dot(self.normal, opposite));
         let band = if fall * band > S::from_f64(FALL) { S::from_f64(FALL) / fall } else { band };
@@ -64,7 +66,9 @@ impl<S: Scalar> Edge<S> {
 }
 
 impl<S: Scalar> Polygon<S> {
-    /// From its corners, counter-clockwise, m; `None` unless there are three to [`MAX_VERTICES`].
+    /// From its corners, counter-clockwise, m; `None` unless there are three to [`MAX_VERTICES`]. Whether they go
+    /// once round the origin and are all seen from there is checked by [`Obstacle::new`](crate::Obstacle::new):
+    /// [`ObstacleError::Vertices`].
     pub fn new(vertices: &[[S; 2]]) -> Option<Self> {
         let vertices = heapless::Vec::from_slice(vertices).ok()?;
         (vertices.len() >= 3).then_some(Self { vertices })
@@ -125,7 +129,8 @@ impl<S: Scalar> Scaled<'_, S> {
         self.scale
     }
 
-    /// At most 1 where the whole polygon is seen from, with some to spare: a convex function like gamma, and never below it. And where it grows to.
+    /// At most 1 where the whole polygon is seen from, with some to spare: a convex function like gamma, and never
+    /// below it. And where it grows to.
     pub fn sight<const D: usize>(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
         let u = plane(u);
         let (most, steepest) = self.edges().fold((S::zero(), [S::zero(); 2]), |(most, steepest), edge| {

@@ -1,7 +1,7 @@
 //! The convex pieces of a polygon, which follow from its shape alone: they are found once, when an obstacle is made.
 //!
-//! A polygon is cut at its notches into convex pieces about the origin, and where one would go half round; what is outside of it, into sectors beyond
-//! the edges.
+//! A polygon is cut at its notches into convex pieces about the origin, and where one would go half round; what is
+//! outside of it, into sectors beyond the edges.
 
 use super::{Edge, MAX_VERTICES, cross, dot, size};
 use crate::Scalar;
@@ -85,8 +85,8 @@ impl<S: Scalar> Cut<S> {
         if self.wall { turn <= S::zero() } else { turn >= S::zero() }
     }
 
-    /// Calls `each` with every convex piece: of a wall what is beyond one edge, within its sector; of a body from its first notch on once round,
-    /// up to the next notch or to where it would go half round the origin.
+    /// Calls `each` with every convex piece: of a wall what is beyond one edge, within its sector; of a body from its
+    /// first notch on once round, up to the next notch or to where it would go half round the origin.
     fn pieces(&self, mut each: impl FnMut(Run)) {
         let all = self.count();
         if self.wall {

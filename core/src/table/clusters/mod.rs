@@ -1,10 +1,12 @@
 //! Obstacles whose hard cores overlap: the flow has to go round all of them together.
 //!
-//! Huber, Billard & Slotine (2019) and Huber, Slotine & Billard (2022): obstacles that have a point in common take it as their reference
-//! point, and the flow goes round their union. Where there is none the cluster is taken as a tree (each overlaps the next, but not all of them).
+//! Huber, Billard & Slotine (2019) and Huber, Slotine & Billard (2022): obstacles that have a point in common take it
+//! as their reference point, and the flow goes round their union. Where there is none the cluster is taken as a tree
+//! (each overlaps the next, but not all of them).
 //!
-//! A polygon is to be seen whole from its reference point; it takes no other, and where that leaves none keeps its own. So does a wall, always: it is seen
-//! from inside its free space, where no point of another's core that it overlaps lies.
+//! A polygon is to be seen whole from its reference point; it takes no other, and where that leaves none keeps its
+//! own. So does a wall, always: it is seen from inside its free space, where no point of another's core that it
+//! overlaps lies.
 //!
 //! Sets are of places in the table, one a bit. Whatever depends on an order goes by identifiers, for it must not matter who came first.
 

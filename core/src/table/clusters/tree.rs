@@ -1,6 +1,6 @@
-//! A cluster that has no point in common: each one's reference point lies towards its parent's, so that on it the flow leads away from the branch;
-//! the root keeps its own, and r of all others leads from as near to that as they can be seen from. Where the tree is not seen from there that promises
-//! nothing, and the status says so.
+//! A cluster that has no point in common: each one's reference point lies towards its parent's, so that on it the
+//! flow leads away from the branch; the root keeps its own, and r of all others leads from as near to that as they
+//! can be seen from. Where the tree is not seen from there that promises nothing, and the status says so.
 //!
 //! Walls are the roots of what sticks out of their free space, all of them, and nobody's children.
 
@@ -56,8 +56,9 @@ fn hub<S: Scalar, const D: usize, const CAP: usize>(
         .map(|(_, i)| i)
 }
 
-/// Where a child refers to: from the overlap with its parent on towards the parent's reference point, as far as the child's own core goes. Then in the
-/// notch between the two the child leads the flow away from the branch, as its parent does. Nowhere if a polygon is not seen whole from there.
+/// Where a child refers to: from the overlap with its parent on towards the parent's reference point, as far as the
+/// child's own core goes. Then in the notch between the two the child leads the flow away from the branch, as its
+/// parent does. Nowhere if a polygon is not seen whole from there.
 fn towards_parent<S: Scalar, const D: usize>(
     entries: &[Entry<S, D>],
     parent: usize,
