@@ -13,7 +13,7 @@
 //! Where a is 1 nothing is left: they are apart. Where x is inside all, what is deeper than x remains to be searched.
 
 use super::part::{Look, Part};
-use super::{Depth, MOST};
+use super::{Depth, Few, MOST, few};
 use crate::{Matrix, Scalar, Vector, transposed_times, unit};
 
 /// Most looks, in the plane and in space.
@@ -67,10 +67,10 @@ fn worst<S: Scalar, const D: usize>(looks: &Looks<S, D>) -> Option<&Look<S, D>> 
 }
 
 /// How the parts look from x. A part's own centre shows no plane: it is as deep inside as can be.
-type Looks<S, const D: usize> = heapless::Vec<Look<S, D>, MOST>;
+type Looks<S, const D: usize> = Few<Look<S, D>, MOST>;
 
 fn look<S: Scalar, const D: usize>(parts: &[&Part<'_, S, D>], x: &Vector<S, D>) -> Looks<S, D> {
-    parts.iter().filter_map(|part| part.look(x)).collect()
+    few(parts.iter().filter_map(|part| part.look(x)))
 }
 
 /// Of two, the point between their centres where both gauges are the same, for most that overlap do so there; and how they look from it,
@@ -88,7 +88,7 @@ fn on_the_way<S: Scalar, const D: usize>(parts: &[&Part<'_, S, D>]) -> Option<(V
     }
     let share = of_b.gauge / (of_a.gauge + of_b.gauge);
     let looks = [of_a.nearer(share), of_b.nearer(S::one() - share)];
-    Some((from + (to - from) * share, looks.into_iter().collect()))
+    Some((from + (to - from) * share, few(looks.into_iter())))
 }
 
 /// What is left of an ellipsoid after a cut.

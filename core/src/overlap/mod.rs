@@ -46,7 +46,7 @@ pub(crate) fn overlap<S: Scalar, const D: usize>(a: &Obstacle<S, D>, b: &Obstacl
     if !a.spec().wall && !b.spec().wall && meet_on_the_way(a, b) {
         return true;
     }
-    let others: heapless::Vec<_, MOST_PARTS> = parts(b, a).collect();
+    let others: Few<_, MOST_PARTS> = few(parts(b, a));
     parts(a, b).any(|one| others.iter().any(|other| search(&[&one, other], Depth::Any).is_some()))
 }
 
@@ -81,9 +81,23 @@ fn may_reach<S: Scalar, const D: usize>(wall: &Obstacle<S, D>, b: &Obstacle<S, D
 pub(crate) fn common<S: Scalar, const D: usize>(
     members: &heapless::Vec<&Obstacle<S, D>, MOST>,
 ) -> Option<Vector<S, D>> {
-    let parts: heapless::Vec<Part<'_, S, D>, MOST> = members.iter().map(|o| Part::in_sight(o)).collect();
-    let parts: heapless::Vec<&Part<'_, S, D>, MOST> = parts.iter().collect();
+    let parts: Few<_, MOST> = few(members.iter().map(|o| Part::in_sight(o)));
+    let parts: Few<_, MOST> = few(parts.iter());
     search(&parts, Depth::Deepest).map(|(_, x)| x)
+}
+
+/// A few things in room for so many.
+type Few<T, const MOST: usize> = heapless::Vec<T, MOST>;
+
+/// The first of them that there is room for: `collect` would panic if there were more.
+fn few<T, const MOST: usize>(all: impl Iterator<Item = T>) -> Few<T, MOST> {
+    let mut few = Few::new();
+    for one in all {
+        if few.push(one).is_err() {
+            break;
+        }
+    }
+    few
 }
 
 /// Where an obstacle's reference point may be: inside its core, of a polygon where all of it is seen from.
