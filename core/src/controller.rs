@@ -192,7 +192,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
     /// attractor and obstacles as they are at this sample, the guard as they will be at the next one. gamma, nearest
     /// and region are those of x at this sample; EXTRAPOLATED and HELD speak of ages before the step.
     ///
-    /// `dt` is in s, not negative. With 0 no time passes, nothing is guarded, and a set acceleration leaves the
+    /// `dt` is in s, not negative. With less than 1e-9 no time passes, nothing is guarded, and a set acceleration leaves the
     /// command as it was. A `dt` that is negative or not finite counts as 0, and the command is zero with
     /// [`Status::NOT_FINITE`].
     ///
@@ -362,7 +362,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
 /// The time step, and whether it is one; in the place of what is none, no time.
 fn time_step<S: Scalar>(dt: S) -> (S, bool) {
     let valid = dt >= S::zero() && dt.is_finite();
-    (if valid { dt } else { S::zero() }, valid)
+    (if valid && dt >= S::from_f64(1e-9) { dt } else { S::zero() }, valid)
 }
 
 fn region<S: Scalar, const D: usize, const CAP: usize>(around: &Surroundings<S, D, CAP>) -> Region {

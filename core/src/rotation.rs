@@ -108,6 +108,21 @@ pub(crate) fn is_rotation<S: Scalar, const D: usize>(q: &Matrix<S, D>) -> bool {
     error.iter().all(|x| x.abs() <= S::from_f64(2e-3)) && determinant(q) > S::zero()
 }
 
+/// The rotation that one with an error is meant for: Newton's steps towards Q (Q'Q)^(-1/2), as after every turn. One without keeps its bits.
+pub(crate) fn righted<S: Scalar, const D: usize>(q: &Matrix<S, D>) -> Matrix<S, D> {
+    let (mut q, three) = (*q, Matrix::<S, D>::identity() * S::from_f64(3.0));
+    // Each squares what is left of 1e-3.
+    for _ in 0..3 {
+        let squares = q.transpose() * q;
+        let error = (squares - Matrix::<S, D>::identity()).iter().fold(S::zero(), |m, x| m.max(x.abs()));
+        if error <= S::rounding(S::one()) * S::from_f64(8.0) {
+            break;
+        }
+        q = q * (three - squares) * S::from_f64(0.5);
+    }
+    q
+}
+
 /// Is this an angular velocity: skew-symmetric and within `limit` rad/s?
 pub(crate) fn is_spin<S: Scalar, const D: usize>(spin: &Matrix<S, D>, limit: S) -> bool {
     (spin + spin.transpose()).iter().all(|x| *x == S::zero()) && spin.iter().all(|x| x.abs() <= limit)

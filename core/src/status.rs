@@ -47,8 +47,8 @@ bitflags! {
         const CLUSTER = 1 << 7;
         /// The guard changed the command, for by the next sample it would have come nearer to a hard core than it may.
         const GUARDED = 1 << 8;
-        /// The guard found no velocity within the speed limit that keeps the next sample out of every hard core: of
-        /// those it knows of, the command violates the worst the least.
+        /// The guard found no velocity within the speed limit that keeps the next sample out of every hard core, and
+        /// standing still does not either: the command violates what the worst of them asks for the least.
         const INFEASIBLE = 1 << 9;
     }
 }

@@ -44,7 +44,7 @@ fn attractor_rests<S: Scalar, const D: usize>(seed: u64) {
             }
             // Within the guard's skin it may be pushed out.
             let command = controller.tick(&state, S::from_f64(0.001));
-            if Asked::new(&controller, &state, 0.001).may_stand {
+            if Asked::new(&controller, &state, 0.001).undisturbed {
                 assert_eq!(command.velocity, Vector::<S, D>::zero(), "{command:?} {controller:?}");
                 tally.ticked += 1;
             }

@@ -32,11 +32,12 @@
 //! polygon                  one for each convex piece: off its nearest edge, or its nearest corner
 //! wall                     n inwards                    gap = the tangent's, less what the curve bends within speed dt
 //!
-//! room = gap - skin,   skin = max(2^-16 m, 16 eps max(1 m, |x_i|)),   eps: Scalar::EPSILON
+//! room = gap - skin,   skin = max(2^-16 m, 16 eps max(1 m, |x_i|)),   eps: Scalar::EPSILON (in fixed point 16 eps)
 //! ```
 //!
 //! [`Status::GUARDED`](crate::Status::GUARDED) says that the command is another than was wanted,
-//! [`Status::INFEASIBLE`](crate::Status::INFEASIBLE) that there is no velocity that fulfils all. The guard may change the
+//! [`Status::INFEASIBLE`](crate::Status::INFEASIBLE) that none was found that keeps the next sample out, and standing still
+//! does not either. The guard may change the
 //! velocity by more than the acceleration limit, never beyond the speed. The papers have no such stage: it is ours, but
 //! for the way in which the nearest velocity is found ([`nearest`], known from ORCA, van den Berg et al. 2011). Polygons
 //! and walls in full are in section 7 of `docs/method.md`.
@@ -62,6 +63,9 @@ const SKIN: f64 = 1.0 / 65536.0;
 
 /// The share of the skin that one sample makes up for in its outer half: more than rounding takes, and no more of a push than that.
 const HOLD: f64 = 0.06;
+
+/// Where the skin cannot be kept, a core itself is kept off by so many units of rounding.
+const BARE: f64 = 4.0;
 
 /// How the guard lets the robot come near: n.u >= -alpha room/dt. The [module](self) has the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,19 +104,58 @@ impl<S: Scalar> Guard<S> {
         let mut seen = HalfSpaces::new(speed);
         self.look(&here, wanted, speed, dt, table, around, &mut seen);
         let best = seen.nearest(wanted);
-        // A core that cannot be left in time alone cannot be left along with others.
-        if best.feasible || seen.fastest > speed {
-            return best;
+        if best.feasible { best } else { self.otherwise(x, best, seen.fastest, wanted, speed, dt, table, around) }
+    }
+
+    /// What is left where not every half-space can be fulfilled.
+    #[cold]
+    #[inline(never)]
+    #[allow(clippy::too_many_arguments, reason = "as above, and what was found")]
+    fn otherwise<const D: usize, const CAP: usize>(
+        &self,
+        x: &Vector<S, D>,
+        best: Solution<S, D>,
+        fastest: S,
+        wanted: &Vector<S, D>,
+        speed: S,
+        dt: S,
+        table: &Table<S, D, CAP>,
+        around: &Surroundings<S, D, CAP>,
+    ) -> Solution<S, D> {
+        // A surface that cannot be kept away from in time alone cannot be kept away from along with others.
+        if !(fastest > speed) {
+            // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
+            let at = x + best.velocity * dt;
+            let step = speed * dt * S::from_f64(2.0);
+            let there = View { x, at: &at, step, approach: S::one(), skin: skin(x) };
+            let mut seen = HalfSpaces::new(speed);
+            self.look(&there, wanted, speed, dt, table, around, &mut seen);
+            if let Some(velocity) = seen.allowed(wanted) {
+                return Solution::found(velocity, wanted);
+            }
         }
-        // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
-        let at = x + best.velocity * dt;
-        let there = View { x, at: &at, step: speed * dt * S::from_f64(2.0), approach: S::one(), skin };
-        seen.clear(speed);
-        self.look(&there, wanted, speed, dt, table, around, &mut seen);
-        match seen.allowed(wanted) {
-            Some(velocity) => Solution { velocity, changed: velocity != *wanted, violation: S::zero(), feasible: true },
-            None => best,
+        // The skin is no core: what keeps the next sample out of the cores themselves will do.
+        if Self::clear(&(x + best.velocity * dt), rounding(x, BARE), table, around) {
+            return Solution::found(best.velocity, wanted);
         }
+        if Self::clear(x, S::zero(), table, around) { Solution::found(Vector::zeros(), wanted) } else { best }
+    }
+
+    /// Is a place outside of every core, farther than `rounding`, m?
+    fn clear<const D: usize, const CAP: usize>(
+        place: &Vector<S, D>,
+        rounding: S,
+        table: &Table<S, D, CAP>,
+        around: &Surroundings<S, D, CAP>,
+    ) -> bool {
+        let outside = |(index, _): &(usize, S)| {
+            table.at(*index).is_none_or(|o| {
+                let gamma = o.gamma(place);
+                gamma >= S::one() && (rounding == S::zero() || !o.is_near(gamma, rounding))
+            })
+        };
+        let share = rounding / table.scan().radius();
+        around.near.iter().all(outside) && !(table.scan().gamma(place) < (S::one() + share) * (S::one() + share))
     }
 
     /// The half-spaces that are seen from one place, into `all`.
@@ -184,11 +227,6 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
         Self { all: heapless::Vec::new(), speed, fastest: S::zero() }
     }
 
-    fn clear(&mut self, speed: S) {
-        self.all.clear();
-        (self.speed, self.fastest) = (speed, S::zero());
-    }
-
     /// Puts one in; where there is no room, in the place of the loosest, which no velocity slower than its offset violates.
     fn add(&mut self, new: HalfSpace<S, D>) {
         if !(new.offset > -self.speed) {
@@ -215,10 +253,18 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
     }
 }
 
-/// A surface is kept this far away, m: what rounding may do to a distance between two points of this size, and no less than [`SKIN`].
+/// A surface is kept this far away, m: what rounding may do to a distance between two points of this size, and no less
+/// than [`SKIN`].
 fn skin<S: Scalar, const D: usize>(x: &Vector<S, D>) -> S {
-    let largest = x.iter().fold(S::one(), |m, x| m.max(x.abs()));
-    (S::EPSILON * S::from_f64(16.0) * largest).max(S::from_f64(SKIN))
+    rounding(x, 16.0).max(S::from_f64(SKIN))
+}
+
+/// So many units of rounding of a position like this one, m. In fixed point (where the square of epsilon is zero) all
+/// are equally coarse.
+fn rounding<S: Scalar, const D: usize>(x: &Vector<S, D>, units: f64) -> S {
+    let one = S::one();
+    let size = if S::EPSILON * S::EPSILON > S::zero() { x.iter().fold(one, |m, x| m.max(x.abs())) } else { one };
+    S::EPSILON * S::from_f64(units) * size
 }
 
 /// By how much the surface of a body of this size, m, counts as nearer, m: what rounding may do to the distance from
@@ -230,4 +276,35 @@ pub(crate) fn blur<S: Scalar>(size: S) -> S {
     let two = S::one() + S::one();
     let all = if S::EPSILON * S::EPSILON > S::zero() { eight * two } else { eight * size.max(two) };
     (all - S::from_f64(SKIN)).max(S::zero())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// More half-spaces than there is room for, in any order: what was found violates none of them, also not those that were left out.
+    #[test]
+    fn half_spaces_beyond_the_capacity_are_kept_by_speed() {
+        const COUNT: usize = CAPACITY + 40;
+        for turn in 0..50 {
+            // Those in the way of +x are tighter than those in the way of -x, for which there is no room.
+            let all: [_; COUNT] = core::array::from_fn(|i| {
+                let i = (i * 89 + turn * 7) % COUNT;
+                let (way, offset) = if i < CAPACITY { (-1.0, -0.5) } else { (1.0, -1.2) };
+                let angle = (i % 40) as f64 / 40.0 - 0.5;
+                HalfSpace {
+                    normal: Vector::<f64, 2>::new(way * libm::cos(angle), libm::sin(angle)),
+                    offset: offset - i as f64 * 1e-3,
+                }
+            });
+            let mut seen = HalfSpaces::new(2.0);
+            all.iter().for_each(|h| seen.add(*h));
+            let found = seen.nearest(&Vector::<f64, 2>::new(-2.0, 0.0));
+            assert!(found.feasible);
+            assert!(found.velocity.x < -1.2, "more is kept than need be: {found:?}");
+            for h in &all {
+                assert!(h.normal.dot(&found.velocity) >= h.offset - 1e-12, "{h:?} {found:?}");
+            }
+        }
+    }
 }

@@ -43,6 +43,13 @@ pub struct Solution<S: Scalar, const D: usize> {
     pub feasible: bool,
 }
 
+impl<S: Scalar, const D: usize> Solution<S, D> {
+    /// A velocity that violates none.
+    pub(super) fn found(velocity: Vector<S, D>, wanted: &Vector<S, D>) -> Self {
+        Self { velocity, changed: velocity != *wanted, violation: S::zero(), feasible: true }
+    }
+}
+
 /// The velocity nearest to `wanted` (m/s) in all half-spaces and the ball |u| <= `speed` (m/s):
 ///
 /// ```text

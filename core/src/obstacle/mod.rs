@@ -61,7 +61,7 @@ pub(crate) use abreast::Abreast;
 pub(crate) use sample::{Sample, SoftLayer};
 
 use crate::shape::{Body, Pieces, Place, Shape, root};
-use crate::{Matrix, Scalar, Vector, norm, times, transposed_times};
+use crate::{Matrix, Scalar, Vector, norm, rotation, times, transposed_times};
 
 /// A checked obstacle, at its present pose and size.
 ///
@@ -152,8 +152,10 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     ///
     /// # Errors
     /// The first field that is out of its range, as [`ObstacleError`] states it.
-    pub fn new(spec: ObstacleSpec<S, D>) -> Result<Self, ObstacleError> {
+    pub fn new(mut spec: ObstacleSpec<S, D>) -> Result<Self, ObstacleError> {
         spec.check()?;
+        // Now, for the first turn would do it, and the surface jump.
+        spec.rotation = rotation::righted(&spec.rotation);
         let (body, unit) = spec.shape.body(spec.wall);
         if !(body.sight(&spec.shape, &spec.reference.component_div(&unit)).0 < S::one()) {
             return Err(ObstacleError::Reference);

@@ -121,3 +121,22 @@ fn abreast_as_alone_in_every_number() {
     abreast_as_alone::<Fixed, 2>();
     abreast_as_alone::<Fixed, 3>();
 }
+
+/// What is accepted as a rotation is one before anything moves: its first turn moves no surface by more than it turns.
+#[test]
+fn a_first_turn_is_no_jump() {
+    let spin = rotation::planar_spin(1e-6);
+    for off in [-1e-3, -1e-5, 1e-6, 9e-4] {
+        let error = Matrix::<f64, 2>::from_fn(|i, j| off * [1.0, 0.0, 0.3, -0.5][2 * i + j]);
+        let shape = ellipse(100.0, 50.0, 1);
+        let rotation = rotation::planar(0.9) + error;
+        let before = Obstacle::new(ObstacleSpec { shape, rotation, spin, ..ObstacleSpec::default() }).unwrap();
+        let mut after = before.clone();
+        after.advance(0.001);
+        for i in 0..40 {
+            let way = Vector::<f64, 2>::new(libm::cos(f64::from(i)), libm::sin(f64::from(i)));
+            let moved = (after.surface(&way) - before.surface(&way)).norm();
+            assert!(moved < 1e-6, "by {off}: {moved} m");
+        }
+    }
+}

@@ -117,7 +117,7 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Rounded<S, D> {
 
     fn keep_out(&self, at: &Place<'_, S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
         if at.wall {
-            return self.keep_in(at, keep);
+            return self.keep_in(at).into_iter().for_each(|(normal, gap)| keep(normal, gap));
         }
         let Gauge { lambda, gradient } = self.gauge(&at.u);
         // Near the centre the edges' radius may have no digits, and the normal none.
@@ -132,7 +132,12 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Rounded<S, D> {
 impl<S: Scalar, const D: usize> Rounded<S, D> {
     /// With k the point of the smaller body nearest to u, |u + delta - k| <= r is enough to stay inside; with |delta| <= L that is
     /// n.delta <= sqrt(r^2 - L^2) - |u - k|. Within the smaller body a step shorter than r ends inside anyway.
-    fn keep_in(&self, at: &Place<'_, S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
+    fn keep_in(&self, at: &Place<'_, S, D>) -> heapless::Vec<(Vector<S, D>, S), 6> {
+        let mut kept = heapless::Vec::new();
+        // Cannot be full: two for each extent.
+        let mut keep = |normal: Vector<S, D>, gap: S| {
+            let _ = kept.push((normal.component_mul(at.inverse), gap));
+        };
         let zero = S::zero();
         let fastest = at.inverse.iter().fold(zero, |m, i| m.max(*i));
         let stride = at.step * fastest;
@@ -145,26 +150,47 @@ impl<S: Scalar, const D: usize> Rounded<S, D> {
             let (away, _) = self.beyond(&at.u);
             let distance = S::norm(away.as_slice());
             if distance > zero {
-                keep(-(away / distance).component_mul(at.inverse), rest(self.radius) - distance);
+                keep(-(away / distance), rest(self.radius) - distance);
             }
-            return;
+            return kept;
         }
-        // Edges sharper than a step is long: stay within the smaller body.
-        let (_, t) = self.beyond(&at.u);
+        // Edges sharper than a step is long: stay within a box (a cylinder) that has u inside and is inside the body, between its faces.
+        let (away, t) = self.beyond(&at.u);
+        let (away, distance) = (self.distances(&away), S::norm(away.as_slice()));
+        let (scale, more) = if distance > self.radius {
+            (self.radius / distance, zero)
+        } else {
+            let terms = S::from_f64(if D == 2 || self.turned { 2.0 } else { 3.0 });
+            (S::one(), (self.radius - distance) / terms.sqrt())
+        };
+        // |a + (r - |a|)(1, 1, ..)/sqrt(n)| <= r
+        let face = Vector::<S, D>::from_fn(|i, _| self.half[i] + away[i] * scale + more);
+        let mut between = |normal: Vector<S, D>, face: S, along: S| {
+            keep(-normal, face - along);
+            keep(normal, face + along);
+        };
         for i in 0..D {
-            let mut normal = Vector::<S, D>::zeros();
-            let mut edge = self.half[i];
-            if self.turned && i < 2 {
-                if i == 1 || !(t[0] > zero) {
-                    continue;
-                }
-                (normal[0], normal[1]) = (-at.u[0] / t[0], -at.u[1] / t[0]);
-                edge = if stride < edge { rest(edge) } else { zero };
-            } else {
-                normal[i] = if at.u[i] < zero { S::one() } else { -S::one() };
+            if !(self.turned && i < 2) {
+                between(Vector::from_fn(|j, _| if i == j { S::one() } else { zero }), face[i], at.u[i]);
             }
-            keep(normal.component_mul(at.inverse), edge - t[i]);
         }
+        if !self.turned {
+            return kept;
+        }
+        let out = if t[0] > zero { [at.u[0] / t[0], at.u[1] / t[0]] } else { [S::one(), zero] };
+        if stride < face[0] && t[0] <= rest(face[0]) {
+            let normal = Vector::<S, D>::from_fn(|i, _| out.get(i).map_or(zero, |x| -*x));
+            keep(normal, rest(face[0]) - t[0]);
+            return kept;
+        }
+        // A step reaches over the disc: stay within the square that has a corner where u is.
+        let half = S::from_f64(core::f64::consts::FRAC_1_SQRT_2);
+        for turn in [half, -half] {
+            let normal = [out[0] * half - out[1] * turn, out[1] * half + out[0] * turn];
+            let normal = Vector::<S, D>::from_fn(|i, _| normal.get(i).copied().unwrap_or(zero));
+            between(normal, face[0] * half, t[0] * half);
+        }
+        kept
     }
 
     /// From the nearest point of the smaller body to u; and t, the distances from the axes that its extents are measured along.

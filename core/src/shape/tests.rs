@@ -139,6 +139,28 @@ fn gap<S: Scalar, const D: usize>(o: &Obstacle<S, D>, x: &Vector<S, D>) -> S {
     gap
 }
 
+/// In a wall, at this depth on the way from its centre, with steps of so many times its least extent.
+fn held<const D: usize>(
+    shape: Shape<f64, D>,
+    way: [f64; D],
+    depth: f64,
+    step: f64,
+    steps: &[[f64; D]],
+) -> Result<(), TestCaseError> {
+    let rounded = matches!(shape, Shape::Box { .. } | Shape::Cylinder { .. } | Shape::Capsule { .. });
+    let step = step * shape.extent().iter().fold(f64::MAX, |m, x| m.min(*x));
+    let o = Obstacle::new(ObstacleSpec { shape, wall: true, ..ObstacleSpec::default() }).unwrap();
+    let x = o.surface(&unit(way)) * depth;
+    let mut stays = true;
+    let wish = Vector::<f64, D>::zeros();
+    o.keep_out(&Outlook { at: &x, wish: &wish, step, reach: 2.0 * step, share: 1.0 }, |_, gap| stays &= gap >= -1e-12);
+    // An edge that a step does not reach over bends within the step.
+    let sharp = step > 1.5 * o.spec().shape.extent().iter().fold(0.0, |m: f64, x| m.max(*x));
+    prop_assert!(stays || !(rounded && sharp), "at {x} it has to move");
+    kept_out(&o, &x, step, steps)?;
+    Ok(())
+}
+
 /// No point of the surface is farther along n than the farthest.
 fn farthest<const D: usize>(shape: Shape<f64, D>, n: [f64; D], ways: &[[f64; D]]) -> Result<(), TestCaseError> {
     let turn = Matrix::<f64, D>::from_fn(|i, j| match (i, j) {
@@ -159,6 +181,25 @@ fn farthest<const D: usize>(shape: Shape<f64, D>, n: [f64; D], ways: &[[f64; D]]
 }
 
 proptest! {
+    /// However thin it is: a step may be longer than it is wide. And nobody inside has to move.
+    #[test]
+    fn a_wall_holds_steps_of_any_length(
+        shape in prop_oneof![flat(), (0.002..0.02f64, 0.002..0.3f64, 0.05..1.0f64)
+            .prop_map(|(a, b, r)| Shape::Box { half: V2::new(a, b), rounding: r * a.min(b) })],
+        way in [-1.0..1.0f64, -1.0..1.0], depth in 0.0..1.0f64, step in 0.1..4.0f64,
+        steps in prop::collection::vec([-1.0..1.0f64, -1.0..1.0], 40)
+    ) {
+        held(shape, way, depth, step, &steps)?;
+    }
+
+    #[test]
+    fn a_wall_in_space_holds_steps_of_any_length(
+        shape in spatial(), way in [-1.0..1.0f64, -1.0..1.0, -1.0..1.0], depth in 0.0..1.0f64, step in 0.1..4.0f64,
+        steps in prop::collection::vec([-1.0..1.0f64, -1.0..1.0, -1.0..1.0], 40)
+    ) {
+        held(shape, way, depth, step, &steps)?;
+    }
+
     #[test]
     fn nothing_of_a_flat_body_is_farther_than_the_farthest(
         shape in flat(), n in [-1.0..1.0f64, -1.0..1.0], ways in prop::collection::vec([-1.0..1.0f64, -1.0..1.0], 200)

@@ -41,6 +41,10 @@ use crate::surroundings::Surroundings;
 use crate::{Obstacle, Scalar, Scan, Status, Vector};
 use clusters::Clusters;
 
+/// A step that is longer than this may pass several ages at once, s; in a shorter one an obstacle does all of it what it did at its beginning,
+/// which is what the guard saw coming.
+const LONG: f64 = 0.1;
+
 /// An obstacle, who it is, and how long ago it was seen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry<S: Scalar, const D: usize> {
@@ -61,6 +65,23 @@ impl<S: Scalar, const D: usize> Entry<S, D> {
     /// How long ago it was seen, s; it stops at [`Ageing::hold`].
     pub fn age(&self) -> S {
         self.age
+    }
+
+    /// So many seconds pass at once, as they would in short steps.
+    fn pass(&mut self, time: S, ageing: &Ageing<S>) {
+        let age = (self.age + time).min(ageing.hold);
+        let (moving, growing) = (age - self.age, age - self.age.max(ageing.time_to_live));
+        if moving > S::zero() {
+            self.obstacle.carry(moving);
+        }
+        if age >= ageing.time_to_live {
+            self.obstacle.ages(ageing.growth);
+            self.obstacle.age(growing.max(S::zero()));
+        }
+        if age >= ageing.hold {
+            self.obstacle.hold();
+        }
+        self.age = age;
     }
 }
 
@@ -112,7 +133,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     }
 
     /// Puts an obstacle in, or in the place of the one with the same identifier. `age` is how many seconds ago it was
-    /// seen as described: a number, below 0 counted as 0 and above the hold time as that. It is carried on to now as
+    /// seen as described: below 0 counted as 0, above the hold time, or no number, as that. It is carried on to now as
     /// [`Table::advance`] would have done (one that turns in at most 100 steps). Cores that overlap get their
     /// reference points.
     ///
@@ -125,20 +146,12 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         age: S,
         ageing: &Ageing<S>,
     ) -> Result<(), TableFull> {
-        let age = age.max(S::zero()).min(ageing.hold);
+        // Who knows no age is taken for as old as can be.
+        let age = if age <= ageing.hold { age.max(S::zero()) } else { ageing.hold };
         // It may come out of a table, where it was old.
         obstacle.ages(S::zero());
-        if age > S::zero() {
-            obstacle.carry(age);
-        }
-        if age >= ageing.time_to_live {
-            obstacle.ages(ageing.growth);
-            obstacle.age(age - ageing.time_to_live);
-        }
-        if age >= ageing.hold {
-            obstacle.hold();
-        }
-        let entry = Entry { id, obstacle, age };
+        let mut entry = Entry { id, obstacle, age: S::zero() };
+        entry.pass(age, ageing);
         let index = match self.entries.iter_mut().enumerate().find(|(_, e)| e.id == id) {
             Some((index, old)) => {
                 *old = entry;
@@ -214,6 +227,18 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     pub fn advance(&mut self, dt: S, ageing: &Ageing<S>) -> Status {
         let mut status = self.scan.status(ageing) | self.clusters.status();
         let fresh = ageing.time_to_live.min(ageing.hold);
+        if dt > S::from_f64(LONG) {
+            for entry in &mut self.entries {
+                if entry.age >= ageing.hold {
+                    status |= Status::HELD;
+                } else if entry.age >= fresh {
+                    status |= Status::EXTRAPOLATED;
+                }
+                entry.pass(dt, ageing);
+            }
+            self.scan.advance(dt, ageing);
+            return status;
+        }
         for entry in &mut self.entries {
             if entry.age < fresh {
                 entry.obstacle.advance(dt);

@@ -37,6 +37,39 @@ fn an_old_obstacle_moves_then_grows_then_is_held() {
 }
 
 #[test]
+fn one_long_step_is_as_many_short_ones() {
+    let ageing = Ageing::default();
+    for milliseconds in [150, 300, 999, 1000, 10_000] {
+        let (mut here, mut there): (Table<f64, 2, 1>, Table<f64, 2, 1>) = (Table::new(), Table::new());
+        for table in [&mut here, &mut there] {
+            table.upsert(1, moving(), 0.0, &ageing).unwrap();
+        }
+        for _ in 0..milliseconds {
+            here.advance(0.001, &ageing);
+        }
+        there.advance(f64::from(milliseconds) * 0.001, &ageing);
+        let look = |t: &Table<f64, 2, 1>| {
+            let o = t.iter().next().unwrap().obstacle();
+            [o.spec().center.x, o.gamma(&Vector::<f64, 2>::new(0.3, 0.1))]
+        };
+        let ([x, gamma], [at, level]) = (look(&here), look(&there));
+        // The growth begins, and the motion ends, up to a step later.
+        assert!(
+            (x - at).abs() < 2e-4 && (gamma - level).abs() < 1e-2 * gamma,
+            "{milliseconds} ms: {x} {at}, {gamma} {level}"
+        );
+    }
+}
+
+#[test]
+fn an_age_that_is_no_number_is_the_oldest() {
+    let mut table: Table<f64, 2, 1> = Table::new();
+    table.upsert(1, moving(), f64::NAN, &Ageing::default()).unwrap();
+    assert_eq!(table.iter().next().unwrap().age(), Ageing::<f64>::default().hold);
+    assert_eq!(table.advance(0.001, &Ageing::default()), Status::HELD);
+}
+
+#[test]
 fn an_old_sighting_is_as_if_it_had_aged_here() {
     let ageing = Ageing::default();
     let spin = crate::rotation::planar_spin(5.0);

@@ -1,7 +1,7 @@
 //! Was there really no velocity? Section 7 of docs/method.md once more, in f64 and from what is public: what every core of the next sample asks of
 //! the velocity, as far as there is no choice in it.
 
-use super::numbers;
+use super::{gamma, numbers};
 use pliant_core::{Controller, Obstacle, RobotState, Scalar, Shape, Vector};
 
 /// n.u >= offset, m/s.
@@ -14,8 +14,10 @@ struct Side<const D: usize> {
 pub struct Asked<const D: usize> {
     sides: Vec<Side<D>>,
     speed: f64,
-    /// Is standing still allowed by every obstacle there is?
+    /// Is the robot outside of every core there will be where it is?
     pub may_stand: bool,
+    /// And farther from each than the guard keeps it?
+    pub undisturbed: bool,
     /// Is a polygon or a wall so near that it may ask for something? Then there is more to fulfil than `sides`.
     pub more: bool,
 }
@@ -38,38 +40,31 @@ impl<const D: usize> Asked<D> {
     ) -> Self {
         let x = numbers(state.position());
         let settings = controller.settings();
-        let (speed, alpha) = (settings.limits.speed.to_f64(), settings.guard.map_or(1.0, |g| g.approach.to_f64()));
+        let speed = settings.limits.speed.to_f64();
         let eps = S::EPSILON.to_f64();
-        let skin = (16.0 * eps * x.iter().fold(1.0, |m, x| x.abs().max(m))).max(1.0 / 65536.0);
+        let size = x.iter().fold(1.0, |m: f64, x| x.abs().max(m));
+        let skin = (16.0 * eps * size).max(1.0 / 65536.0);
         let rounding = Rounding { distance: 4.0 * eps, normal: 64.0 * eps };
-        let mut asked = Self { sides: Vec::new(), speed, may_stand: true, more: false };
+        let may_stand = gamma(controller, state.position()) >= S::one();
+        let mut asked = Self { sides: Vec::new(), speed, may_stand, undisturbed: true, more: false };
         let mut side = |normal: Vector<f64, D>, gap: f64| {
             let gap = gap - rounding.distance;
-            let room = gap - skin;
-            // Farther than a step can bring it near at the rate of approach.
-            if room * alpha > speed * dt {
-                return true;
+            // What a step cannot reach asks for nothing.
+            if gap <= speed * dt {
+                let offset = -(gap - 4.0 * eps * size) / dt + rounding.normal * speed;
+                asked.sides.push(Side { normal, offset });
             }
-            let share = if room > 0.0 {
-                alpha
-            } else if 2.0 * gap >= skin {
-                0.06
-            } else {
-                1.0
-            };
-            let offset = -room * share / dt + rounding.normal * speed;
-            asked.sides.push(Side { normal, offset });
-            room >= 0.0
+            gap >= skin
         };
         let step = speed * dt;
-        let (mut may_stand, mut more) = (true, false);
+        let (mut undisturbed, mut more) = (true, false);
         for entry in controller.table().iter() {
             let o = entry.obstacle();
             match &o.spec().shape {
                 shape if o.spec().wall && !matches!(shape, Shape::Polygon(_)) => {
                     // The curve of the wall within a step takes at most 1.2 p (2p - 1) L^2 of 1 - gamma, with p = 3 and L = 2 mm/0.7 m 1.5e-4, and of a
                     // box whose corners have a radius of 0.2 m 2e-5 m: nothing where the gauge is below 0.98. Its rate of approach asks for more.
-                    may_stand &= o.gamma(state.position()).to_f64() > 1.0 / (0.98 * 0.98);
+                    undisturbed &= o.gamma(state.position()).to_f64() > 1.0 / (0.98 * 0.98);
                     more = true;
                 }
                 Shape::Polygon(polygon) => {
@@ -83,12 +78,12 @@ impl<const D: usize> Asked<D> {
                     // In fixed point epsilon has no square.
                     let unit = if S::EPSILON * S::EPSILON > S::zero() { 2.0 } else { size.max(2.0) };
                     let skin = skin + (8.0 * eps * size * unit - 1.0 / 65536.0).max(0.0);
-                    may_stand &= !inside && share * d > 2.0 * step + skin + rounding.distance;
-                    more |= inside || (share * d - 2.0 * step - skin) * alpha < step;
+                    undisturbed &= !inside && share * d > 2.0 * step + skin + rounding.distance;
+                    more |= inside || share * d - 2.0 * step - skin < step;
                 }
                 _ => {
                     if let Some((normal, gap)) = supporting(o, state.position()) {
-                        may_stand &= side(normal, gap);
+                        undisturbed &= side(normal, gap);
                     }
                 }
             }
@@ -96,12 +91,12 @@ impl<const D: usize> Asked<D> {
         for p in controller.table().scan().points() {
             let away = x - numbers(p);
             if away.norm() > 1e-6 {
-                may_stand &= side(away.normalize(), away.norm() - controller.table().scan().radius().to_f64());
+                undisturbed &= side(away.normalize(), away.norm() - controller.table().scan().radius().to_f64());
             } else {
-                (may_stand, more) = (false, true);
+                (undisturbed, more) = (false, true);
             }
         }
-        (asked.may_stand, asked.more) = (may_stand, more);
+        (asked.undisturbed, asked.more) = (undisturbed, more);
         asked
     }
 

@@ -3,8 +3,8 @@
 
 use pliant_core::shape::{MAX_VERTICES, Polygon};
 use pliant_core::{
-    Ageing, Component, Controller, LpvDs, Matrix, Motion, Obstacle, ObstacleSpec, RobotState, Scalar, Scan, Settings,
-    Shape, SteeringPolicy, Vector, rotation,
+    Ageing, Component, Controller, Guard, LpvDs, Matrix, Motion, Obstacle, ObstacleSpec, RobotState, Scalar, Scan,
+    Settings, Shape, SteeringPolicy, Vector, rotation,
 };
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -228,6 +228,17 @@ pub fn settings<S: Scalar>(r: &mut Random) -> Settings<S> {
     settings
 }
 
+/// The same with limits and guards of every kind.
+fn pressed<S: Scalar>(r: &mut Random, mut settings: Settings<S>) -> Settings<S> {
+    if r.random_bool(0.3) {
+        settings.limits.speed = S::from_f64(10f64.powf(r.random_range(-4.0..0.3)));
+    }
+    if r.random_bool(0.5) {
+        settings.guard = Some(Guard { approach: S::from_f64(10f64.powf(r.random_range(-2.5..0.0))) });
+    }
+    settings
+}
+
 pub struct World<S: Scalar, const D: usize> {
     pub controller: Controller<S, D, 40>,
     pub start: Vector<f64, D>,
@@ -256,10 +267,21 @@ pub fn world<S: Scalar, const D: usize>(seed: u64, kind: &Kind) -> Option<World<
             (0..n).map(|i| Vector::from_fn(|j, _| S::from_f64(at(j, f64::from(i) / f64::from(n))))).collect();
         controller.set_scan(Scan::new(&points, S::from_f64(0.02)).unwrap(), S::zero());
     }
+    if kind.odd {
+        controller.set_settings(pressed(r, controller.settings().clone()));
+    }
     (0..200).find_map(|_| {
-        let start = Vector::<f64, D>::from_fn(|_, _| r.random_range(-0.7..0.7f64));
-        let state = RobotState::new(start.map(S::from_f64)).unwrap();
-        (gamma(&controller, state.position()) > S::from_f64(1.000_1)).then_some(())?;
+        let mut start = Vector::<f64, D>::from_fn(|_, _| r.random_range(-0.7..0.7f64));
+        if kind.odd && controller.table().len() > 0 && r.random_bool(0.3) {
+            // Hard by a surface, within its skin too.
+            let of = controller.table().iter().nth(r.random_range(0..controller.table().len()))?.obstacle();
+            let way = numbers(&(of.surface(&start.map(S::from_f64)) - of.spec().center));
+            let beyond = 1.0 + 10f64.powf(r.random_range(-7.0..-3.0));
+            start = numbers(&of.spec().center) + way * if of.spec().wall { 1.0 / beyond } else { beyond };
+        }
+        let state = RobotState::new(start.map(S::from_f64))?;
+        (gamma(&controller, state.position()) >= S::one()).then_some(())?;
+        let start = numbers(state.position());
         Some(World { controller: controller.clone(), start })
     })
 }
