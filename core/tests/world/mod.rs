@@ -268,11 +268,11 @@ pub fn world<S: Scalar, const D: usize>(seed: u64, kind: &Kind) -> Option<World<
         controller.set_scan(Scan::new(&points, S::from_f64(0.02)).unwrap(), S::zero());
     }
     if kind.odd {
-        controller.set_settings(pressed(r, controller.settings().clone()));
+        controller.set_settings(pressed(r, *controller.settings()));
     }
     (0..200).find_map(|_| {
         let mut start = Vector::<f64, D>::from_fn(|_, _| r.random_range(-0.7..0.7f64));
-        if kind.odd && controller.table().len() > 0 && r.random_bool(0.3) {
+        if kind.odd && controller.table().iter().next().is_some() && r.random_bool(0.3) {
             // Hard by a surface, within its skin too.
             let of = controller.table().iter().nth(r.random_range(0..controller.table().len()))?.obstacle();
             let way = numbers(&(of.surface(&start.map(S::from_f64)) - of.spec().center));
