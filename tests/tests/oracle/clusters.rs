@@ -5,7 +5,6 @@ use pliant_tests::oracle::random_scene::{RandomScene, Recipe, generate_from};
 use pliant_tests::oracle::{OracleScene, Sharing, clusters, largest_gauge, pair_reference, reference_in_world};
 
 use super::convert::{as_used, controller};
-use super::size;
 
 /// How much deeper a point in common may be than the one that is taken, over the gauge.
 const NEARLY: f64 = 0.1;
