@@ -107,7 +107,7 @@ pub(crate) struct Sight<'a, S: Scalar, const D: usize> {
 }
 
 /// Up to which gauge, to the power of 2p, a reference point is drawn from where it has to be, and what is aimed at.
-const DRAWN: (f64, f64) = (0.8, 0.78);
+const DRAWN: (f64, f64) = (0.9, 0.88);
 /// Most steps to there.
 const STEPS: u8 = 8;
 
