@@ -51,18 +51,16 @@ fn drive(c: &mut Controller<f64, 2, 16>, mut x: V, seconds: f64) -> (V, f64, Sta
 }
 
 #[test]
-fn two_that_overlap_share_a_point_nearly_as_deep_as_any() {
+fn two_that_overlap_share_the_best_point() {
     let mut c = controller(V::zeros());
     put(&mut c, &[ellipse(0.5, 0.0, 0.1, 0.05, 0.4), ellipse(0.6, 0.08, 0.1, 0.04, -0.8)]);
     let shared = reference(&c, 0);
     assert!((shared - reference(&c, 1)).norm() < 1e-12);
-    // The gauge; nowhere is the larger one less by more than a tenth.
-    let worst = |x: &V| gamma(&c, 0, x).max(gamma(&c, 1, x)).sqrt();
+    let worst = |x: &V| gamma(&c, 0, x).max(gamma(&c, 1, x));
     assert!(worst(&shared) < 1.0);
-    for i in 0..6000 {
+    for i in 0..60 {
         let (sin, cos) = (f64::from(i) * 0.1047).sin_cos();
-        let elsewhere = shared + V::new(cos, sin) * (f64::from(i) * 1e-5);
-        assert!(worst(&elsewhere) >= worst(&shared) - 0.1, "{elsewhere} is deeper");
+        assert!(worst(&(shared + V::new(cos, sin) * 1e-4)) >= worst(&shared) - 1e-12, "not the minimiser");
     }
     assert!(c.table_mut().remove(1));
     assert_eq!(reference(&c, 0), V::new(0.5, 0.0), "alone again");

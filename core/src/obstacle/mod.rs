@@ -402,6 +402,19 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.body.pieces()
     }
 
+    /// (s diag(hard) Q')' (s diag(hard) Q') of an ellipsoid with p = 1, nothing of all else: s^2 P of Gamma = (x - c)' P (x - c).
+    pub(crate) fn quadratic(&self, scale: S) -> Option<Matrix<S, D>> {
+        self.plain.then(|| {
+            let scaled = self.scaling * scale;
+            scaled.transpose() * scaled
+        })
+    }
+
+    /// The steepest of its scales, 1/m.
+    pub(crate) fn steepest(&self) -> S {
+        self.hard.iter().fold(S::zero(), |m, x| m.max(*x))
+    }
+
     /// p: Gamma is the gauge to the power of 2p.
     pub(crate) fn power(&self) -> u8 {
         self.body.power()

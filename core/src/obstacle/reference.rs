@@ -28,7 +28,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// A direction of scaled coordinates, as a normal in the world's frame, of any length.
     fn outward(&self, direction: &Vector<S, D>) -> Vector<S, D> {
         // Scaled by one over the shortest axis a normal could leave the range.
-        let most = self.hard.iter().fold(S::zero(), |m, x| m.max(*x));
+        let most = self.steepest();
         times(&self.spec.rotation, &direction.zip_map(&self.hard, |d, hard| d * (hard / most)))
     }
 

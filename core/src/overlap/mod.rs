@@ -5,6 +5,7 @@
 //! however shallow, as far as the numbers tell.
 
 mod ellipsoid;
+mod pair;
 mod part;
 
 use crate::obstacle::Obstacle;
@@ -77,10 +78,16 @@ fn may_reach<S: Scalar, const D: usize>(wall: &Obstacle<S, D>, b: &Obstacle<S, D
     !(inside || convex && (0..1 << D).all(|n| wall.gamma(&b.corner(n)) > S::one()))
 }
 
-/// The point that is deepest inside where the reference points of all of these may be, nearly, m; `None` if they have none in common.
+/// The point that is deepest inside where the reference points of all of these may be, m: of two ellipsoids exactly, else
+/// nearly; `None` if they have none in common.
 pub(crate) fn common<S: Scalar, const D: usize>(
     members: &heapless::Vec<&Obstacle<S, D>, MOST>,
 ) -> Option<Vector<S, D>> {
+    if let [a, b] = members.as_slice()
+        && let Some(point) = pair::deepest(a, b)
+    {
+        return point;
+    }
     let parts: Few<_, MOST> = few(members.iter().map(|o| Part::in_sight(o)));
     let parts: Few<_, MOST> = few(parts.iter());
     search(&parts, Depth::Deepest).map(|(_, x)| x)
@@ -107,7 +114,7 @@ pub(crate) struct Sight<'a, S: Scalar, const D: usize> {
 }
 
 /// Up to which gauge, to the power of 2p, a reference point is drawn from where it has to be, and what is aimed at.
-const DRAWN: (f64, f64) = (0.9, 0.88);
+const DRAWN: (f64, f64) = (0.8, 0.78);
 /// Most steps to there.
 const STEPS: u8 = 8;
 
@@ -116,11 +123,14 @@ impl<'a, S: Scalar, const D: usize> Sight<'a, S, D> {
         Self { part: Part::in_sight(obstacle), of: obstacle }
     }
 
-    /// A point of it in another's hard core, well inside both if that is possible; m.
+    /// A point of it in another's hard core, well inside both if that is possible, of two ellipsoids the deepest; m.
     pub fn meets(&self, other: &Obstacle<S, D>) -> Option<Vector<S, D>> {
         if !are_near(self.of, other) {
             // They have moved apart since they were compared.
             return None;
+        }
+        if let Some(point) = pair::deepest(self.of, other) {
+            return point;
         }
         let depth = if other.spec().wall { Depth::Any } else { Depth::Ample };
         let mut best = (S::one(), None);

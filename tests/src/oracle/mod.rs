@@ -30,9 +30,7 @@ mod shape;
 mod properties;
 
 pub use carry::carried;
-pub use cluster::{
-    OracleCluster, Sharing, clusters, largest_gauge, lean, pair_reference, refer, reference_in_world, sharing,
-};
+pub use cluster::{OracleCluster, Sharing, clusters, lean, pair_reference, refer, reference_in_world, sharing};
 pub use error::OracleError;
 pub use evaluation::{Evaluation, ObstacleView, Region, Switches, evaluate};
 pub use guard::{Guarded, HalfSpace, HalfSpaces, Violation, guarded, half_spaces, violations};

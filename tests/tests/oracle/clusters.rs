@@ -2,12 +2,10 @@
 
 use pliant_core::{Controller, RobotState, Status, Vector};
 use pliant_tests::oracle::random_scene::{RandomScene, Recipe, generate_from};
-use pliant_tests::oracle::{OracleScene, Sharing, clusters, largest_gauge, pair_reference, reference_in_world};
+use pliant_tests::oracle::{OracleScene, Sharing, clusters, pair_reference, reference_in_world};
 
 use super::convert::{as_used, controller};
-
-/// How much deeper a point in common may be than the one that is taken, over the gauge.
-const NEARLY: f64 = 0.1;
+use super::size;
 
 /// How many clusters were looked at.
 #[derive(Debug, Default)]
@@ -53,11 +51,10 @@ fn look<const D: usize>(seed: u64, random: &RandomScene, looked: &mut Looked) {
         if let [a, b] = cluster.members[..]
             && let Some(page) = pair_reference(own, a, b).unwrap()
         {
-            let least = largest_gauge(own, &[a, b], &page).unwrap();
             for n in [a, b] {
                 let point = reference_in_world(&used, n).unwrap();
-                let gauge = largest_gauge(own, &[a, b], &point).unwrap();
-                assert!((least - 1e-9..=least + NEARLY).contains(&gauge), "seed {seed}: {gauge} is not {least}");
+                let error: Vec<f64> = point.iter().zip(&page).map(|(p, q)| p - q).collect();
+                assert!(size(&error) < 1e-6, "seed {seed}: {point:?} is not {page:?}");
             }
             looked.pairs += 1;
         }

@@ -1,5 +1,5 @@
 //! Whether the reference point of a child in a tree is where the page has it: from a point that it shares with its parent
-//! towards the parent's own reference point, as far as Gamma of the child is at most 0.9; for a polygon by what is in sight.
+//! towards the parent's own reference point, as far as Gamma of the child is at most 0.8; for a polygon by what is in sight.
 
 use nalgebra::DVector;
 
@@ -9,7 +9,7 @@ use super::super::shape::Shape;
 use super::overlap::{Sharing, sight_and_core};
 
 /// Gamma of the child up to which its reference point goes.
-const DEPTH: f64 = 0.9;
+const DEPTH: f64 = 0.8;
 /// Gamma of the child that a search of few steps may leave below that.
 const COARSE: f64 = 0.1;
 /// Rounding of a Gamma.

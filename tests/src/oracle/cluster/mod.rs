@@ -208,19 +208,6 @@ pub fn clusters(scene: &OracleScene) -> Result<Option<Vec<OracleCluster>>, Oracl
     Ok(Some(found))
 }
 
-/// The largest gauge of these obstacles, Gamma^(1/2) of ellipsoids, at a point of the world's frame.
-///
-/// # Errors
-/// Where the scene is not valid, or has no such obstacle.
-pub fn largest_gauge(scene: &OracleScene, members: &[usize], point: &[f64]) -> Result<f64, OracleError> {
-    let bodies = bodies(scene)?;
-    let x = DVector::from_column_slice(point);
-    members.iter().try_fold(0.0, |most: f64, n| {
-        let body = bodies.get(*n).ok_or(OracleError::Value("number of an obstacle"))?;
-        Ok(most.max(body.gamma(&x).sqrt()))
-    })
-}
-
 /// The common reference point of two ellipsoids (p = 1) in the world; none for other shapes.
 ///
 /// # Errors
