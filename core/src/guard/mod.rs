@@ -99,80 +99,52 @@ impl<S: Scalar> Guard<S> {
         table: &Table<S, D, CAP>,
         around: &Surroundings<S, D, CAP>,
     ) -> Solution<S, D> {
-        let skin = skin(x);
-        let here = View { x, at: x, step: speed * dt, approach: self.approach, skin };
+        let next = Next { x, wanted, speed, dt, skin: skin(x), table, around };
         let mut seen = HalfSpaces::new(speed);
-        self.look(&here, wanted, speed, dt, table, around, &mut seen);
+        let here = View { at: x, step: speed * dt, approach: self.approach };
+        self.look(&next, &here, &mut seen);
         let best = seen.nearest(wanted);
-        if best.feasible { best } else { self.otherwise(x, best, seen.fastest, wanted, speed, dt, table, around) }
+        if best.feasible { best } else { self.otherwise(&next, best, seen.fastest) }
     }
 
-    /// What is left where not every half-space can be fulfilled.
+    /// What is left where not every half-space can be fulfilled, `best` violates them least, and `fastest` is the largest offset, m/s.
     #[cold]
     #[inline(never)]
-    #[allow(clippy::too_many_arguments, reason = "as above, and what was found")]
     fn otherwise<const D: usize, const CAP: usize>(
         &self,
-        x: &Vector<S, D>,
+        next: &Next<'_, S, D, CAP>,
         best: Solution<S, D>,
         fastest: S,
-        wanted: &Vector<S, D>,
-        speed: S,
-        dt: S,
-        table: &Table<S, D, CAP>,
-        around: &Surroundings<S, D, CAP>,
     ) -> Solution<S, D> {
+        let Next { x, wanted, speed, dt, .. } = *next;
         // A surface that cannot be kept away from in time alone cannot be kept away from along with others.
         if !(fastest > speed) {
             // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
             let at = x + best.velocity * dt;
-            let step = speed * dt * S::from_f64(2.0);
-            let there = View { x, at: &at, step, approach: S::one(), skin: skin(x) };
+            let there = View { at: &at, step: speed * dt * S::from_f64(2.0), approach: S::one() };
             let mut seen = HalfSpaces::new(speed);
-            self.look(&there, wanted, speed, dt, table, around, &mut seen);
+            self.look(next, &there, &mut seen);
             if let Some(velocity) = seen.allowed(wanted) {
                 return Solution::found(velocity, wanted);
             }
         }
         // The skin is no core: what keeps the next sample out of the cores themselves will do.
-        if Self::clear(&(x + best.velocity * dt), rounding(x, BARE), table, around) {
+        if next.is_clear(&(x + best.velocity * dt), rounding(x, BARE)) {
             return Solution::found(best.velocity, wanted);
         }
-        if Self::clear(x, S::zero(), table, around) { Solution::found(Vector::zeros(), wanted) } else { best }
-    }
-
-    /// Is a place outside of every core, farther than `rounding`, m?
-    fn clear<const D: usize, const CAP: usize>(
-        place: &Vector<S, D>,
-        rounding: S,
-        table: &Table<S, D, CAP>,
-        around: &Surroundings<S, D, CAP>,
-    ) -> bool {
-        let outside = |(index, _): &(usize, S)| {
-            table.at(*index).is_none_or(|o| {
-                let gamma = o.gamma(place);
-                gamma >= S::one() && (rounding == S::zero() || !o.is_near(gamma, rounding))
-            })
-        };
-        let share = rounding / table.scan().radius();
-        around.near.iter().all(outside) && !(table.scan().gamma(place) < (S::one() + share) * (S::one() + share))
+        if next.is_clear(x, S::zero()) { Solution::found(Vector::zeros(), wanted) } else { best }
     }
 
     /// The half-spaces that are seen from one place, into `all`.
-    #[allow(clippy::too_many_arguments, reason = "what is seen, from where, and where to put it")]
     fn look<const D: usize, const CAP: usize>(
         &self,
+        next: &Next<'_, S, D, CAP>,
         view: &View<'_, S, D>,
-        wanted: &Vector<S, D>,
-        speed: S,
-        dt: S,
-        table: &Table<S, D, CAP>,
-        around: &Surroundings<S, D, CAP>,
         all: &mut HalfSpaces<S, D>,
     ) {
-        let skin = view.skin;
-        let rate = S::one() / dt;
-        let gone = view.at - view.x;
+        let skin = next.skin;
+        let rate = S::one() / next.dt;
+        let gone = view.at - next.x;
         let mut keep = |normal: Vector<S, D>, gap: S| {
             let room = gap - skin;
             let share = if room > S::zero() {
@@ -184,34 +156,64 @@ impl<S: Scalar> Guard<S> {
             };
             all.add(HalfSpace { normal, offset: (normal.dot(&gone) - room * share) * rate });
         };
-        let wish = wanted * dt - gone;
-        for (index, reach) in &around.near {
-            if let Some(obstacle) = table.at(*index) {
+        let wish = next.wanted * next.dt - gone;
+        for (index, reach) in &next.around.near {
+            if let Some(obstacle) = next.table.at(*index) {
                 let reach = *reach + view.step;
                 let from = Outlook { at: view.at, wish: &wish, step: view.step, reach, share: view.approach };
                 obstacle.keep_out(&from, &mut keep);
             }
         }
-        if !table.scan().points().is_empty() {
-            let blur = blur(table.scan().radius());
-            let reach = self.reach(view.x, speed, dt) + view.step + blur;
-            table.scan().keep_out(view.at, reach, |normal, gap| keep(normal, gap - blur));
+        let scan = next.table.scan();
+        if !scan.points().is_empty() {
+            let blur = blur(scan.radius());
+            let reach = self.reach(next.x, next.speed, next.dt) + view.step + blur;
+            scan.keep_out(view.at, reach, |normal, gap| keep(normal, gap - blur));
         }
+    }
+}
+
+/// The step to the next sample.
+struct Next<'a, S: Scalar, const D: usize, const CAP: usize> {
+    /// The robot, m.
+    x: &'a Vector<S, D>,
+    /// What is wanted, m/s.
+    wanted: &'a Vector<S, D>,
+    /// The limit, m/s.
+    speed: S,
+    /// Its time, s.
+    dt: S,
+    /// What surfaces are kept away, m.
+    skin: S,
+    /// What is there at the next sample.
+    table: &'a Table<S, D, CAP>,
+    /// What was seen from x at this one.
+    around: &'a Surroundings<S, D, CAP>,
+}
+
+impl<S: Scalar, const D: usize, const CAP: usize> Next<'_, S, D, CAP> {
+    /// Is a place outside of every core, farther than `rounding`, m?
+    fn is_clear(&self, place: &Vector<S, D>, rounding: S) -> bool {
+        let outside = |(index, _): &(usize, S)| {
+            self.table.at(*index).is_none_or(|o| {
+                let gamma = o.gamma(place);
+                gamma >= S::one() && (rounding == S::zero() || !o.is_near(gamma, rounding))
+            })
+        };
+        let scan = self.table.scan();
+        let share = rounding / scan.radius();
+        self.around.near.iter().all(outside) && !(scan.gamma(place) < (S::one() + share) * (S::one() + share))
     }
 }
 
 /// From where surfaces are looked at.
 struct View<'a, S: Scalar, const D: usize> {
-    /// The robot, m.
-    x: &'a Vector<S, D>,
-    /// The place to look from, m.
+    /// The place, m.
     at: &'a Vector<S, D>,
     /// No sample is farther from there, m.
     step: S,
     /// The share of the distance that may be used up.
     approach: S,
-    /// What surfaces are kept away, m.
-    skin: S,
 }
 
 /// The half-spaces of one tick that any velocity could violate, and the speed up to which those that found no room cannot be.
