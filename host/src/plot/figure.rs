@@ -394,15 +394,21 @@ mod tests {
         let mut numbers = Vec::new();
         let mut one = String::new();
         for c in data.chars().chain([' ']) {
-            if !(c.is_ascii_digit() || c == '.') && !one.is_empty() && one != "-" {
+            let goes_on = c.is_ascii_digit() || c == '.' || one.is_empty();
+            if !goes_on {
                 numbers.push(std::mem::take(&mut one).parse::<f64>().unwrap());
             }
             if c.is_ascii_digit() || c == '.' || c == '-' {
                 one.push(c);
             }
         }
+        let mut at = Point2::origin();
         let steps = numbers.chunks(2).map(|p| Vector2::new(p[0], p[1]));
-        steps.scan(Point2::origin(), |at, step| Some(*at += step).map(|()| *at)).collect()
+        let walk = steps.map(|step| {
+            at += step;
+            at
+        });
+        walk.collect()
     }
 
     #[test]

@@ -137,7 +137,7 @@ fn a_long_recording_is_judged_at_every_fifth_sample_and_from_the_twentieth_on() 
     };
     let rows = |poisoned: bool| -> Vec<(f64, [f64; 2], [f64; 2])> {
         let row = |i: usize| {
-            let v = if poisoned && i % 5 != 0 { [1e6, -1e6] } else { at(i).map(|c| -c) };
+            let v = if poisoned && !i.is_multiple_of(5) { [1e6, -1e6] } else { at(i).map(|c| -c) };
             (i as f64 * 1e-3, if poisoned && i < 19 { at(i).map(|c| c + 0.004 * (i % 5) as f64) } else { at(i) }, v)
         };
         (0..1000).map(row).collect()
