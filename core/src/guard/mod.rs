@@ -14,8 +14,9 @@
 //! sample, so no velocity of the obstacle and no second order of its turning enters. Of all u that fulfil every
 //! inequality and |u| <= speed the one nearest to what was wanted is driven. One half-space a core is enough to be
 //! outside and more than is needed: where none fulfils them all, those that hold the cores as seen from where the
-//! least violation leads are tried, without alpha. Where that fails too, the velocity that violates the worst
-//! inequality least is driven, and the status says so.
+//! least violation leads are tried, without alpha; and in a room that is narrower than a step can bend, tangents of its
+//! wall from several places. Where that fails too, the velocity that violates the worst inequality least is driven, and
+//! the status says so.
 //!
 //! What is exact: superellipsoids, boxes, cylinders, capsules, points of a scan, and polygons, by their convex
 //! pieces. A wall's free space is convex but for polygons; a half-space would let a step end outside of its curve, so
@@ -52,7 +53,7 @@ pub use program::{HalfSpace, Solution, nearest};
 use crate::obstacle::Outlook;
 use crate::surroundings::Surroundings;
 use crate::table::Table;
-use crate::{Scalar, Vector};
+use crate::{Obstacle, Scalar, Vector};
 
 /// Most half-spaces of one tick; those that bind the least and find no room are kept by going more slowly.
 const CAPACITY: usize = 192;
@@ -66,6 +67,9 @@ const HOLD: f64 = 0.06;
 
 /// Where the skin cannot be kept, a core itself is kept off by so many units of rounding.
 const BARE: f64 = 4.0;
+
+/// From so many places the walls of a narrow room are looked at.
+const TANGENTS: usize = 16;
 
 /// How the guard lets the robot come near: n.u >= -alpha room/dt. The [module](self) has the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,7 +106,7 @@ impl<S: Scalar> Guard<S> {
         let skin = skin(x);
         let here = View { x, at: x, step: speed * dt, approach: self.approach, skin };
         let mut seen = HalfSpaces::new(speed);
-        self.look(&here, wanted, speed, dt, table, around, &mut seen);
+        self.look(&here, wanted, dt, table, around, |_| true, &mut seen);
         let best = seen.nearest(wanted);
         if best.feasible { best } else { self.otherwise(x, best, seen.fastest, wanted, speed, dt, table, around) }
     }
@@ -122,34 +126,78 @@ impl<S: Scalar> Guard<S> {
         table: &Table<S, D, CAP>,
         around: &Surroundings<S, D, CAP>,
     ) -> Solution<S, D> {
+        let mut seen = HalfSpaces::new(speed);
         // A surface that cannot be kept away from in time alone cannot be kept away from along with others.
         if !(fastest > speed) {
             // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
             let at = x + best.velocity * dt;
             let step = speed * dt * S::from_f64(2.0);
             let there = View { x, at: &at, step, approach: S::one(), skin: skin(x) };
-            let mut seen = HalfSpaces::new(speed);
-            self.look(&there, wanted, speed, dt, table, around, &mut seen);
+            self.look(&there, wanted, dt, table, around, |_| true, &mut seen);
             if let Some(velocity) = seen.allowed(wanted) {
                 return Solution::found(velocity, wanted);
             }
         }
         // The skin is no core: what keeps the next sample out of the cores themselves will do.
-        if Self::clear(&(x + best.velocity * dt), rounding(x, BARE), table, around) {
+        if Self::clear(&(x + best.velocity * dt), rounding(x, BARE), table, around, |_| true) {
             return Solution::found(best.velocity, wanted);
         }
-        if Self::clear(x, S::zero(), table, around) { Solution::found(Vector::zeros(), wanted) } else { best }
+        if Self::clear(x, S::zero(), table, around, |_| true) {
+            return Solution::found(Vector::zeros(), wanted);
+        }
+        seen.clear(speed);
+        match self.within_walls(x, wanted, dt, table, around, &mut seen) {
+            Some(velocity) => Solution::found(velocity, wanted),
+            None => best,
+        }
     }
 
-    /// Is a place outside of every core, farther than `rounding`, m?
+    /// Where walls leave less room than a step can bend: tangents of their free spaces, each with all of it on one side, are gathered from where one
+    /// velocity after the other leads, until one leads inside.
+    fn within_walls<const D: usize, const CAP: usize>(
+        &self,
+        x: &Vector<S, D>,
+        wanted: &Vector<S, D>,
+        dt: S,
+        table: &Table<S, D, CAP>,
+        around: &Surroundings<S, D, CAP>,
+        seen: &mut HalfSpaces<S, D>,
+    ) -> Option<Vector<S, D>> {
+        let walls = || around.near.iter().filter_map(|(index, _)| table.at(*index)).filter(|o| o.is_round_wall());
+        walls().next()?;
+        let others = |o: &Obstacle<S, D>| !o.is_round_wall();
+        let (skin, bare) = (skin(x), rounding(x, BARE));
+        let here = View { x, at: x, step: seen.speed * dt, approach: S::one(), skin };
+        self.look(&here, wanted, dt, table, around, others, seen);
+        let (mut at, mut velocity) = (*x, Vector::zeros());
+        for _ in 0..TANGENTS {
+            let mut within = true;
+            for wall in walls() {
+                wall.tangent(&at, |normal, gap| {
+                    within &= gap >= bare;
+                    let offset = (normal.dot(&(at - x)) + skin - gap) / dt;
+                    seen.add(HalfSpace { normal, offset });
+                });
+            }
+            if within && Self::clear(&at, bare, table, around, others) {
+                return Some(velocity);
+            }
+            velocity = seen.allowed(wanted)?;
+            at = x + velocity * dt;
+        }
+        None
+    }
+
+    /// Is a place outside of every core that counts, farther than `rounding`, m?
     fn clear<const D: usize, const CAP: usize>(
         place: &Vector<S, D>,
         rounding: S,
         table: &Table<S, D, CAP>,
         around: &Surroundings<S, D, CAP>,
+        counts: impl Fn(&Obstacle<S, D>) -> bool,
     ) -> bool {
         let outside = |(index, _): &(usize, S)| {
-            table.at(*index).is_none_or(|o| {
+            table.at(*index).filter(|o| counts(o)).is_none_or(|o| {
                 let gamma = o.gamma(place);
                 gamma >= S::one() && (rounding == S::zero() || !o.is_near(gamma, rounding))
             })
@@ -158,19 +206,19 @@ impl<S: Scalar> Guard<S> {
         around.near.iter().all(outside) && !(table.scan().gamma(place) < (S::one() + share) * (S::one() + share))
     }
 
-    /// The half-spaces that are seen from one place, into `all`.
+    /// The half-spaces of all obstacles that count, as seen from one place, into `all`.
     #[allow(clippy::too_many_arguments, reason = "what is seen, from where, and where to put it")]
     fn look<const D: usize, const CAP: usize>(
         &self,
         view: &View<'_, S, D>,
         wanted: &Vector<S, D>,
-        speed: S,
         dt: S,
         table: &Table<S, D, CAP>,
         around: &Surroundings<S, D, CAP>,
+        counts: impl Fn(&Obstacle<S, D>) -> bool,
         all: &mut HalfSpaces<S, D>,
     ) {
-        let skin = view.skin;
+        let (skin, speed) = (view.skin, all.speed);
         let rate = S::one() / dt;
         let gone = view.at - view.x;
         let mut keep = |normal: Vector<S, D>, gap: S| {
@@ -186,7 +234,7 @@ impl<S: Scalar> Guard<S> {
         };
         let wish = wanted * dt - gone;
         for (index, reach) in &around.near {
-            if let Some(obstacle) = table.at(*index) {
+            if let Some(obstacle) = table.at(*index).filter(|o| counts(o)) {
                 let reach = *reach + view.step;
                 let from = Outlook { at: view.at, wish: &wish, step: view.step, reach, share: view.approach };
                 obstacle.keep_out(&from, &mut keep);
@@ -225,6 +273,11 @@ struct HalfSpaces<S: Scalar, const D: usize> {
 impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
     fn new(speed: S) -> Self {
         Self { all: heapless::Vec::new(), speed, fastest: S::zero() }
+    }
+
+    fn clear(&mut self, speed: S) {
+        self.all.clear();
+        (self.speed, self.fastest) = (speed, S::zero());
     }
 
     /// Puts one in; where there is no room, in the place of the loosest, which no velocity slower than its offset violates.
