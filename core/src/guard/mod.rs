@@ -103,72 +103,58 @@ impl<S: Scalar> Guard<S> {
         table: &Table<S, D, CAP>,
         around: &Surroundings<S, D, CAP>,
     ) -> Solution<S, D> {
-        let skin = skin(x);
-        let here = View { x, at: x, step: speed * dt, approach: self.approach, skin };
+        let next = Next { x, wanted, speed, dt, skin: skin(x), table, around };
         let mut seen = HalfSpaces::new(speed);
-        self.look(&here, wanted, dt, table, around, |_| true, &mut seen);
+        let here = View { at: x, step: speed * dt, approach: self.approach, walls: true };
+        self.look(&next, &here, &mut seen);
         let best = seen.nearest(wanted);
-        if best.feasible { best } else { self.otherwise(x, best, seen.fastest, wanted, speed, dt, table, around) }
+        if best.feasible { best } else { self.otherwise(&next, best, seen.fastest) }
     }
 
-    /// What is left where not every half-space can be fulfilled.
+    /// What is left where not every half-space can be fulfilled, `best` violates them least, and `fastest` is the largest offset, m/s.
     #[cold]
     #[inline(never)]
-    #[allow(clippy::too_many_arguments, reason = "as above, and what was found")]
     fn otherwise<const D: usize, const CAP: usize>(
         &self,
-        x: &Vector<S, D>,
+        next: &Next<'_, S, D, CAP>,
         best: Solution<S, D>,
         fastest: S,
-        wanted: &Vector<S, D>,
-        speed: S,
-        dt: S,
-        table: &Table<S, D, CAP>,
-        around: &Surroundings<S, D, CAP>,
     ) -> Solution<S, D> {
+        let Next { x, wanted, speed, dt, .. } = *next;
         let mut seen = HalfSpaces::new(speed);
         // A surface that cannot be kept away from in time alone cannot be kept away from along with others.
         if !(fastest > speed) {
             // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
             let at = x + best.velocity * dt;
-            let step = speed * dt * S::from_f64(2.0);
-            let there = View { x, at: &at, step, approach: S::one(), skin: skin(x) };
-            self.look(&there, wanted, dt, table, around, |_| true, &mut seen);
+            let there = View { at: &at, step: speed * dt * S::from_f64(2.0), approach: S::one(), walls: true };
+            self.look_again(next, &there, &mut seen);
             if let Some(velocity) = seen.allowed(wanted) {
                 return Solution::found(velocity, wanted);
             }
         }
         // The skin is no core: what keeps the next sample out of the cores themselves will do.
-        if Self::clear(&(x + best.velocity * dt), rounding(x, BARE), table, around, |_| true) {
+        if next.is_clear(&(x + best.velocity * dt), rounding(x, BARE), true) {
             return Solution::found(best.velocity, wanted);
         }
-        if Self::clear(x, S::zero(), table, around, |_| true) {
+        if next.is_clear(x, S::zero(), true) {
             return Solution::found(Vector::zeros(), wanted);
         }
         seen.clear(speed);
-        match self.within_walls(x, wanted, dt, table, around, &mut seen) {
-            Some(velocity) => Solution::found(velocity, wanted),
-            None => best,
-        }
+        self.within_walls(next, &mut seen).map_or(best, |velocity| Solution::found(velocity, wanted))
     }
 
     /// Where walls leave less room than a step can bend: tangents of their free spaces, each with all of it on one side, are gathered from where one
     /// velocity after the other leads, until one leads inside.
     fn within_walls<const D: usize, const CAP: usize>(
         &self,
-        x: &Vector<S, D>,
-        wanted: &Vector<S, D>,
-        dt: S,
-        table: &Table<S, D, CAP>,
-        around: &Surroundings<S, D, CAP>,
+        next: &Next<'_, S, D, CAP>,
         seen: &mut HalfSpaces<S, D>,
     ) -> Option<Vector<S, D>> {
-        let walls = || around.near.iter().filter_map(|(index, _)| table.at(*index)).filter(|o| o.is_round_wall());
+        let Next { x, wanted, speed, dt, skin, .. } = *next;
+        let walls = || next.near().filter(|o| o.is_round_wall());
         walls().next()?;
-        let others = |o: &Obstacle<S, D>| !o.is_round_wall();
-        let (skin, bare) = (skin(x), rounding(x, BARE));
-        let here = View { x, at: x, step: seen.speed * dt, approach: S::one(), skin };
-        self.look(&here, wanted, dt, table, around, others, seen);
+        let bare = rounding(x, BARE);
+        self.look_again(next, &View { at: x, step: speed * dt, approach: S::one(), walls: false }, seen);
         let (mut at, mut velocity) = (*x, Vector::zeros());
         for _ in 0..TANGENTS {
             let mut within = true;
@@ -179,7 +165,7 @@ impl<S: Scalar> Guard<S> {
                     seen.add(HalfSpace { normal, offset });
                 });
             }
-            if within && Self::clear(&at, bare, table, around, others) {
+            if within && next.is_clear(&at, bare, false) {
                 return Some(velocity);
             }
             velocity = seen.allowed(wanted)?;
@@ -188,39 +174,29 @@ impl<S: Scalar> Guard<S> {
         None
     }
 
-    /// Is a place outside of every core that counts, farther than `rounding`, m?
-    fn clear<const D: usize, const CAP: usize>(
-        place: &Vector<S, D>,
-        rounding: S,
-        table: &Table<S, D, CAP>,
-        around: &Surroundings<S, D, CAP>,
-        counts: impl Fn(&Obstacle<S, D>) -> bool,
-    ) -> bool {
-        let outside = |(index, _): &(usize, S)| {
-            table.at(*index).filter(|o| counts(o)).is_none_or(|o| {
-                let gamma = o.gamma(place);
-                gamma >= S::one() && (rounding == S::zero() || !o.is_near(gamma, rounding))
-            })
-        };
-        let share = rounding / table.scan().radius();
-        around.near.iter().all(outside) && !(table.scan().gamma(place) < (S::one() + share) * (S::one() + share))
-    }
-
-    /// The half-spaces of all obstacles that count, as seen from one place, into `all`.
-    #[allow(clippy::too_many_arguments, reason = "what is seen, from where, and where to put it")]
-    fn look<const D: usize, const CAP: usize>(
+    /// [`Self::look`] once more, where that is rare: not for each time a copy of it.
+    #[cold]
+    #[inline(never)]
+    fn look_again<const D: usize, const CAP: usize>(
         &self,
+        next: &Next<'_, S, D, CAP>,
         view: &View<'_, S, D>,
-        wanted: &Vector<S, D>,
-        dt: S,
-        table: &Table<S, D, CAP>,
-        around: &Surroundings<S, D, CAP>,
-        counts: impl Fn(&Obstacle<S, D>) -> bool,
         all: &mut HalfSpaces<S, D>,
     ) {
-        let (skin, speed) = (view.skin, all.speed);
-        let rate = S::one() / dt;
-        let gone = view.at - view.x;
+        self.look(next, view, all);
+    }
+
+    /// The half-spaces that are seen from one place, into `all`.
+    #[inline]
+    fn look<const D: usize, const CAP: usize>(
+        &self,
+        next: &Next<'_, S, D, CAP>,
+        view: &View<'_, S, D>,
+        all: &mut HalfSpaces<S, D>,
+    ) {
+        let skin = next.skin;
+        let rate = S::one() / next.dt;
+        let gone = view.at - next.x;
         let mut keep = |normal: Vector<S, D>, gap: S| {
             let room = gap - skin;
             let share = if room > S::zero() {
@@ -232,34 +208,70 @@ impl<S: Scalar> Guard<S> {
             };
             all.add(HalfSpace { normal, offset: (normal.dot(&gone) - room * share) * rate });
         };
-        let wish = wanted * dt - gone;
-        for (index, reach) in &around.near {
-            if let Some(obstacle) = table.at(*index).filter(|o| counts(o)) {
+        let wish = next.wanted * next.dt - gone;
+        for (index, reach) in &next.around.near {
+            if let Some(obstacle) = next.table.at(*index).filter(|o| view.walls || !o.is_round_wall()) {
                 let reach = *reach + view.step;
                 let from = Outlook { at: view.at, wish: &wish, step: view.step, reach, share: view.approach };
                 obstacle.keep_out(&from, &mut keep);
             }
         }
-        if !table.scan().points().is_empty() {
-            let blur = blur(table.scan().radius());
-            let reach = self.reach(view.x, speed, dt) + view.step + blur;
-            table.scan().keep_out(view.at, reach, |normal, gap| keep(normal, gap - blur));
+        let scan = next.table.scan();
+        if !scan.points().is_empty() {
+            let blur = blur(scan.radius());
+            let reach = self.reach(next.x, next.speed, next.dt) + view.step + blur;
+            scan.keep_out(view.at, reach, |normal, gap| keep(normal, gap - blur));
         }
+    }
+}
+
+/// The step to the next sample.
+struct Next<'a, S: Scalar, const D: usize, const CAP: usize> {
+    /// The robot, m.
+    x: &'a Vector<S, D>,
+    /// What is wanted, m/s.
+    wanted: &'a Vector<S, D>,
+    /// The limit, m/s.
+    speed: S,
+    /// Its time, s.
+    dt: S,
+    /// What surfaces are kept away, m.
+    skin: S,
+    /// What is there at the next sample.
+    table: &'a Table<S, D, CAP>,
+    /// What was seen from x at this one.
+    around: &'a Surroundings<S, D, CAP>,
+}
+
+impl<S: Scalar, const D: usize, const CAP: usize> Next<'_, S, D, CAP> {
+    /// The obstacles that may be reached.
+    fn near(&self) -> impl Iterator<Item = &Obstacle<S, D>> {
+        self.around.near.iter().filter_map(|(index, _)| self.table.at(*index))
+    }
+
+    /// Is a place outside of every core, farther than `rounding`, m? Without `walls`, those whose free space is convex do not count.
+    fn is_clear(&self, place: &Vector<S, D>, rounding: S, walls: bool) -> bool {
+        let outside = |o: &Obstacle<S, D>| {
+            let gamma = o.gamma(place);
+            gamma >= S::one() && (rounding == S::zero() || !o.is_near(gamma, rounding))
+        };
+        let scan = self.table.scan();
+        let share = rounding / scan.radius();
+        self.near().filter(|o| walls || !o.is_round_wall()).all(outside)
+            && !(scan.gamma(place) < (S::one() + share) * (S::one() + share))
     }
 }
 
 /// From where surfaces are looked at.
 struct View<'a, S: Scalar, const D: usize> {
-    /// The robot, m.
-    x: &'a Vector<S, D>,
-    /// The place to look from, m.
+    /// The place, m.
     at: &'a Vector<S, D>,
     /// No sample is farther from there, m.
     step: S,
     /// The share of the distance that may be used up.
     approach: S,
-    /// What surfaces are kept away, m.
-    skin: S,
+    /// Do walls count whose free space is convex?
+    walls: bool,
 }
 
 /// The half-spaces of one tick that any velocity could violate, and the speed up to which those that found no room cannot be.
@@ -275,6 +287,7 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
         Self { all: heapless::Vec::new(), speed, fastest: S::zero() }
     }
 
+    /// None, for one more look.
     fn clear(&mut self, speed: S) {
         self.all.clear();
         (self.speed, self.fastest) = (speed, S::zero());

@@ -323,12 +323,17 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         // Scaled, so that squares stay within range; only the direction counts.
         let t = u / largest;
         let size = norm(&t);
-        let shortest = one / self.slimmest;
-        let normal = t.zip_map(&self.hard, |t, inverse| t * (inverse * shortest));
+        // In fixed point a short axis' reciprocal has no square.
+        let (normal, unit) = if S::EPSILON * S::EPSILON > S::zero() {
+            (t.component_mul(&self.hard), one)
+        } else {
+            let shortest = one / self.slimmest;
+            (t.zip_map(&self.hard, |t, inverse| t * (inverse * shortest)), shortest)
+        };
         let inverse = one / norm(&normal);
         keep(
             times(&self.spec.rotation, &(normal * inverse)),
-            size * (largest * size - one) * shortest * inverse - self.blur,
+            size * (largest * size - one) * unit * inverse - self.blur,
         );
     }
 

@@ -47,7 +47,8 @@ fn in_the_middle_of_a_gap_there_is_nothing_to_go_round() {
 
 fn compare<S: Scalar, const D: usize>(seed: u64) {
     let r = &mut ChaCha8Rng::seed_from_u64(seed);
-    let vector = |r: &mut ChaCha8Rng, most: f64| Vector::<S, D>::from_fn(|_, _| S::from_f64(r.random_range(-most..most)));
+    let vector =
+        |r: &mut ChaCha8Rng, most: f64| Vector::<S, D>::from_fn(|_, _| S::from_f64(r.random_range(-most..most)));
     let eps = S::EPSILON.to_f64();
     let (mut bent, mut long) = (0, 0);
     for _ in 0..20_000 {
