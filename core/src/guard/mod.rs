@@ -105,7 +105,7 @@ impl<S: Scalar> Guard<S> {
     ) -> Solution<S, D> {
         let next = Next { x, wanted, speed, dt, skin: skin(x), table, around };
         let mut seen = HalfSpaces::new(speed);
-        let here = View { at: x, step: speed * dt, approach: self.approach, walls: true };
+        let here = View { at: x, step: speed * dt, approach: self.approach, near: &around.near };
         self.look(&next, &here, &mut seen);
         let best = seen.nearest(wanted);
         if best.feasible { best } else { self.otherwise(&next, best, seen.fastest) }
@@ -126,7 +126,8 @@ impl<S: Scalar> Guard<S> {
         if !(fastest > speed) {
             // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
             let at = x + best.velocity * dt;
-            let there = View { at: &at, step: speed * dt * S::from_f64(2.0), approach: S::one(), walls: true };
+            let step = speed * dt * S::from_f64(2.0);
+            let there = View { at: &at, step, approach: S::one(), near: &next.around.near };
             self.look_again(next, &there, &mut seen);
             if let Some(velocity) = seen.allowed(wanted) {
                 return Solution::found(velocity, wanted);
@@ -154,7 +155,9 @@ impl<S: Scalar> Guard<S> {
         let walls = || next.near().filter(|o| o.is_round_wall());
         walls().next()?;
         let bare = rounding(x, BARE);
-        self.look_again(next, &View { at: x, step: speed * dt, approach: S::one(), walls: false }, seen);
+        let mut others = next.around.near.clone();
+        others.retain(|(index, _)| next.table.at(*index).is_some_and(|o| !o.is_round_wall()));
+        self.look_again(next, &View { at: x, step: speed * dt, approach: S::one(), near: &others }, seen);
         let (mut at, mut velocity) = (*x, Vector::zeros());
         for _ in 0..TANGENTS {
             let mut within = true;
@@ -187,7 +190,6 @@ impl<S: Scalar> Guard<S> {
     }
 
     /// The half-spaces that are seen from one place, into `all`.
-    #[inline]
     fn look<const D: usize, const CAP: usize>(
         &self,
         next: &Next<'_, S, D, CAP>,
@@ -209,8 +211,8 @@ impl<S: Scalar> Guard<S> {
             all.add(HalfSpace { normal, offset: (normal.dot(&gone) - room * share) * rate });
         };
         let wish = next.wanted * next.dt - gone;
-        for (index, reach) in &next.around.near {
-            if let Some(obstacle) = next.table.at(*index).filter(|o| view.walls || !o.is_round_wall()) {
+        for (index, reach) in view.near {
+            if let Some(obstacle) = next.table.at(*index) {
                 let reach = *reach + view.step;
                 let from = Outlook { at: view.at, wish: &wish, step: view.step, reach, share: view.approach };
                 obstacle.keep_out(&from, &mut keep);
@@ -270,8 +272,8 @@ struct View<'a, S: Scalar, const D: usize> {
     step: S,
     /// The share of the distance that may be used up.
     approach: S,
-    /// Do walls count whose free space is convex?
-    walls: bool,
+    /// What counts: places in the table, each with how far to look for its surface, m.
+    near: &'a [(usize, S)],
 }
 
 /// The half-spaces of one tick that any velocity could violate, and the speed up to which those that found no room cannot be.
