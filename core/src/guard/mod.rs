@@ -153,7 +153,9 @@ impl<S: Scalar> Guard<S> {
     ) -> Option<Vector<S, D>> {
         let Next { x, wanted, speed, dt, skin, .. } = *next;
         let walls = || next.near().filter(|o| o.is_round_wall());
-        walls().next()?;
+        if !next.table.has_round_walls() {
+            return None;
+        }
         let bare = rounding(x, BARE);
         let mut others = next.around.near.clone();
         others.retain(|(index, _)| next.table.at(*index).is_some_and(|o| !o.is_round_wall()));
