@@ -470,3 +470,5 @@ fn size<S: Scalar, L: Lanes<S, N>, const N: usize, const D: usize>(v: &[L; D]) -
 mod closed_form;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod weights;
