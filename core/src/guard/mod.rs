@@ -108,11 +108,10 @@ impl<S: Scalar> Guard<S> {
         let here = View { at: x, step: speed * dt, approach: self.approach, near: &around.near };
         self.look(&next, &here, &mut seen);
         let best = seen.nearest(wanted);
-        if best.feasible { best } else { self.otherwise(&next, best, seen.fastest, None) }
+        if best.feasible { best } else { self.otherwise(&next, best, seen.fastest) }
     }
 
-    /// What is left where not every half-space can be fulfilled, `best` violates them least, and `fastest` is the largest offset, m/s. With `others`, those
-    /// that may be reached but walls whose free space is convex, nothing is left but what is between these walls.
+    /// What is left where not every half-space can be fulfilled, `best` violates them least, and `fastest` is the largest offset, m/s.
     #[cold]
     #[inline(never)]
     fn otherwise<const D: usize, const CAP: usize>(
@@ -120,23 +119,15 @@ impl<S: Scalar> Guard<S> {
         next: &Next<'_, S, D, CAP>,
         best: Solution<S, D>,
         fastest: S,
-        others: Option<&[(usize, S)]>,
     ) -> Solution<S, D> {
         let Next { x, wanted, speed, dt, .. } = *next;
         // A surface that cannot be kept away from in time alone cannot be kept away from along with others.
-        if others.is_some() || !(fastest > speed) {
+        if !(fastest > speed) {
             // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
-            let at = x + best.velocity * dt;
-            let step = speed * dt;
-            let view = match others {
-                None => View { at: &at, step: step + step, approach: S::one(), near: &next.around.near },
-                Some(near) => View { at: x, step, approach: S::one(), near },
-            };
+            let (at, step) = (x + best.velocity * dt, speed * dt);
+            let there = View { at: &at, step: step + step, approach: S::one(), near: &next.around.near };
             let mut seen = HalfSpaces::new(speed);
-            self.look(next, &view, &mut seen);
-            if others.is_some() {
-                return next.within_walls(&mut seen).map_or(best, |velocity| Solution::found(velocity, wanted));
-            }
+            self.look(next, &there, &mut seen);
             if let Some(velocity) = seen.allowed(wanted) {
                 return Solution::found(velocity, wanted);
             }
@@ -148,16 +139,44 @@ impl<S: Scalar> Guard<S> {
         if next.is_clear(x, S::zero(), true) {
             return Solution::found(Vector::zeros(), wanted);
         }
-        if others.is_some() || !next.table.has_round_walls() {
-            return best;
-        }
-        // By itself, for there is no other way not to have what it looks at twice in the code.
+        let between = if next.table.has_round_walls() { self.between_walls(next) } else { None };
+        between.map_or(best, |velocity| Solution::found(velocity, wanted))
+    }
+
+    /// Where walls leave less room than a step can bend: tangents of their free spaces, each with all of it on one side, are gathered from where one
+    /// velocity after the other leads, until one leads inside.
+    #[cold]
+    #[inline(never)]
+    fn between_walls<const D: usize, const CAP: usize>(&self, next: &Next<'_, S, D, CAP>) -> Option<Vector<S, D>> {
+        let Next { x, wanted, speed, dt, skin, .. } = *next;
+        next.near().find(|o| o.is_round_wall())?;
         let mut others = next.around.near.clone();
         others.retain(|(index, _)| next.table.at(*index).is_some_and(|o| !o.is_round_wall()));
-        self.otherwise(next, best, fastest, Some(&others))
+        let here = View { at: x, step: speed * dt, approach: S::one(), near: &others };
+        let mut seen = HalfSpaces::new(speed);
+        self.look(next, &here, &mut seen);
+        let bare = rounding(x, BARE);
+        let (mut at, mut velocity) = (*x, Vector::zeros());
+        for _ in 0..TANGENTS {
+            let mut within = true;
+            for wall in next.near().filter(|o| o.is_round_wall()) {
+                wall.tangent(&at, |normal, gap| {
+                    within &= gap >= bare;
+                    let offset = (normal.dot(&(at - x)) + skin - gap) / dt;
+                    seen.add(HalfSpace { normal, offset });
+                });
+            }
+            if within && next.is_clear(&at, bare, false) {
+                return Some(velocity);
+            }
+            velocity = seen.allowed(wanted)?;
+            at = x + velocity * dt;
+        }
+        None
     }
 
     /// The half-spaces that are seen from one place, into `all`.
+    #[inline(never)]
     fn look<const D: usize, const CAP: usize>(
         &self,
         next: &Next<'_, S, D, CAP>,
@@ -214,30 +233,6 @@ struct Next<'a, S: Scalar, const D: usize, const CAP: usize> {
 }
 
 impl<S: Scalar, const D: usize, const CAP: usize> Next<'_, S, D, CAP> {
-    /// Where walls leave less room than a step can bend: tangents of their free spaces, each with all of it on one side, are gathered from where one
-    /// velocity after the other leads, until one leads inside. What the others ask for is in `seen`.
-    fn within_walls(&self, seen: &mut HalfSpaces<S, D>) -> Option<Vector<S, D>> {
-        let Next { x, wanted, dt, skin, .. } = *self;
-        let bare = rounding(x, BARE);
-        let (mut at, mut velocity) = (*x, Vector::zeros());
-        for _ in 0..TANGENTS {
-            let mut within = true;
-            for wall in self.near().filter(|o| o.is_round_wall()) {
-                wall.tangent(&at, |normal, gap| {
-                    within &= gap >= bare;
-                    let offset = (normal.dot(&(at - x)) + skin - gap) / dt;
-                    seen.add(HalfSpace { normal, offset });
-                });
-            }
-            if within && self.is_clear(&at, bare, false) {
-                return Some(velocity);
-            }
-            velocity = seen.allowed(wanted)?;
-            at = x + velocity * dt;
-        }
-        None
-    }
-
     /// The obstacles that may be reached.
     fn near(&self) -> impl Iterator<Item = &Obstacle<S, D>> {
         self.around.near.iter().filter_map(|(index, _)| self.table.at(*index))
