@@ -1,4 +1,5 @@
 //! Clean curves that any learner should follow: arcs, S and hooks, of one to three demonstrations, whatever the seed.
+#![allow(clippy::expect_used, reason = "a test may fail")]
 
 use nalgebra::{DVector, Vector2};
 use pliant::learn::{Demonstration, Demonstrations, Options, learn_from, motion_of, quality, recordings};
