@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
 use pliant_core::{
-    Ageing, Controller, Guard, Motion, Obstacle, ObstacleSpec, RobotState, Scan, Settings, Shape, Status, Vector,
-    rotation,
+    Ageing, Controller, Guard, Limits, Motion, Obstacle, ObstacleSpec, RobotState, Scan, Settings, Shape, Status,
+    Vector, rotation,
 };
 
 type V = Vector<f64, 2>;
@@ -208,6 +208,48 @@ fn squeezed_by_two_the_guard_says_so() {
     put(&mut c, &[from(-0.2), from(0.2)]);
     let (_, _, flags) = drive(&mut c, V::zeros(), 0.06);
     assert!(flags.contains(Status::INFEASIBLE), "{flags:?}");
+}
+
+/// From where neither the robot nor its rate of approach would make it look.
+#[test]
+fn what_comes_faster_than_the_robot_goes_is_seen_in_time() {
+    let mut entered = 0;
+    for i in 0..400 {
+        let mut c = controller(V::zeros());
+        let guard = Some(Guard { approach: 1.0 });
+        c.set_settings(Settings { guard, limits: Limits { speed: 1e-3, ..Limits::default() }, ..*c.settings() });
+        let ahead = 0.05 + 1e-5 * f64::from(i);
+        let way = rotation::planar(0.1 * f64::from(i));
+        let velocity = way * V::new(-2.0, 0.0);
+        put(
+            &mut c,
+            &[ObstacleSpec { center: way * V::new(ahead, 0.0), velocity, ..ellipse(0.0, 0.0, 0.05, 0.05, 0.0) }],
+        );
+        let command = c.tick(&RobotState::new(V::zeros()).unwrap(), 0.001);
+        let inside = gamma(&c, 0, &(command.velocity * 0.001)) < 1.0;
+        assert_eq!(command.status.contains(Status::INFEASIBLE), inside, "{ahead}: {command:?}");
+        entered += i32::from(inside);
+    }
+    assert!((150..250).contains(&entered), "{entered}");
+}
+
+/// What the rate of approach would keep the robot from is nearer, but a push out of a core counts for more.
+#[test]
+fn what_comes_may_push_the_robot_towards_what_is_near() {
+    for i in 0..400 {
+        let mut c = controller(V::zeros());
+        let way = rotation::planar(0.1 * f64::from(i));
+        let ball = |x: f64, speed: f64| ObstacleSpec {
+            center: way * V::new(x, 0.0),
+            velocity: way * V::new(speed, 0.0),
+            ..ellipse(0.0, 0.0, 0.05, 0.05, 0.0)
+        };
+        put(&mut c, &[ball(-0.0501, 0.25 + 5e-4 * f64::from(i)), ball(0.055, 0.0)]);
+        let command = c.tick(&RobotState::new(V::zeros()).unwrap(), 0.001);
+        assert!(!command.status.contains(Status::INFEASIBLE), "{i}: {command:?}");
+        let x = command.velocity * 0.001;
+        assert!(gamma(&c, 0, &x) >= 1.0 && gamma(&c, 1, &x) >= 1.0, "{i}: {command:?}");
+    }
 }
 
 #[test]

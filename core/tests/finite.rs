@@ -32,9 +32,10 @@ fn anywhere(r: &mut Random) -> [f64; 3] {
 fn shape<S: Scalar, const D: usize>(r: &mut Random) -> Shape<S, D> {
     let sides = [length::<S>(r), length::<S>(r), length::<S>(r)];
     let least = sides[..D].iter().fold(f64::MAX, |m, x| m.min(*x));
-    match r.random_range(0..4u8) {
+    match r.random_range(0..5u8) {
         0 => world::shape(r, sides[0] * 4.0, true),
-        1 => Shape::Box { half: vector(&sides), rounding: S::from_f64(least) },
+        1 => world::room::narrow(r),
+        2 => Shape::Box { half: vector(&sides), rounding: S::from_f64(least) },
         _ => Shape::Ellipsoid { axes: vector(&sides), curvature: r.random_range(1..=8) },
     }
 }

@@ -190,7 +190,8 @@ mod tests {
         let (exit, out, err) = written(bad(), false);
         assert_eq!((exit, out.as_str()), (2, ""));
         assert!(
-            err.contains("s.toml:2: ds.linear.gain: -1 is too small") && err.contains("allowed: a number above 0"),
+            err.contains("s.toml, line 2: ds.linear.gain: -1 is too small")
+                && err.contains("allowed: a number above 0"),
             "{err}"
         );
         let (exit, out, err) = written(bad(), true);

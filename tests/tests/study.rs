@@ -300,6 +300,8 @@ fn help_says_which_parts_take_a_device() {
         assert!(line.contains(says), "{part}: {line}");
         assert_eq!(takes, ["paper", "experiments"].contains(&part), "{part}");
     }
+    let learns = programs::run(&folder, ["study", "lasa", "--help"]).unwrap().stdout;
+    assert!(learns.contains("Usage: pliant study lasa [OPTIONS] --data <DIR>"), "{learns}");
     fs::remove_dir_all(folder).unwrap();
 }
 

@@ -14,8 +14,9 @@
 //! sample, so no velocity of the obstacle and no second order of its turning enters. Of all u that fulfil every
 //! inequality and |u| <= speed the one nearest to what was wanted is driven. One half-space a core is enough to be
 //! outside and more than is needed: where none fulfils them all, those that hold the cores as seen from where the
-//! least violation leads are tried, without alpha. Where that fails too, the velocity that violates the worst
-//! inequality least is driven, and the status says so.
+//! least violation leads are tried, without alpha; and in a room that is narrower than a step can bend, tangents of its
+//! wall from several places. Where that fails too, the velocity that violates the worst inequality least is driven, and
+//! the status says so.
 //!
 //! What is exact: superellipsoids, boxes, cylinders, capsules, points of a scan, and polygons, by their convex
 //! pieces. A wall's free space is convex but for polygons; a half-space would let a step end outside of its curve, so
@@ -52,7 +53,7 @@ pub use program::{HalfSpace, Solution, nearest};
 use crate::obstacle::Outlook;
 use crate::surroundings::Surroundings;
 use crate::table::Table;
-use crate::{Scalar, Vector};
+use crate::{Obstacle, Scalar, Vector};
 
 /// Most half-spaces of one tick; those that bind the least and find no room are kept by going more slowly.
 const CAPACITY: usize = 192;
@@ -66,6 +67,9 @@ const HOLD: f64 = 0.06;
 
 /// Where the skin cannot be kept, a core itself is kept off by so many units of rounding.
 const BARE: f64 = 4.0;
+
+/// From so many places the walls of a narrow room are looked at.
+const TANGENTS: usize = 16;
 
 /// How the guard lets the robot come near: n.u >= -alpha room/dt. The [module](self) has the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,80 +103,70 @@ impl<S: Scalar> Guard<S> {
         table: &Table<S, D, CAP>,
         around: &Surroundings<S, D, CAP>,
     ) -> Solution<S, D> {
-        let skin = skin(x);
-        let here = View { x, at: x, step: speed * dt, approach: self.approach, skin };
+        let next = Next { x, wanted, speed, dt, skin: skin(x), table, around };
         let mut seen = HalfSpaces::new(speed);
-        self.look(&here, wanted, speed, dt, table, around, &mut seen);
+        let here = View { at: x, step: speed * dt, approach: self.approach, near: &around.near };
+        self.look(&next, &here, &mut seen);
         let best = seen.nearest(wanted);
-        if best.feasible { best } else { self.otherwise(x, best, seen.fastest, wanted, speed, dt, table, around) }
+        if best.feasible { best } else { self.otherwise(&next, best, seen.fastest, None) }
     }
 
-    /// What is left where not every half-space can be fulfilled.
+    /// What is left where not every half-space can be fulfilled, `best` violates them least, and `fastest` is the largest offset, m/s. With `others`, those
+    /// that may be reached but walls whose free space is convex, nothing is left but what is between these walls.
     #[cold]
     #[inline(never)]
-    #[allow(clippy::too_many_arguments, reason = "as above, and what was found")]
     fn otherwise<const D: usize, const CAP: usize>(
         &self,
-        x: &Vector<S, D>,
+        next: &Next<'_, S, D, CAP>,
         best: Solution<S, D>,
         fastest: S,
-        wanted: &Vector<S, D>,
-        speed: S,
-        dt: S,
-        table: &Table<S, D, CAP>,
-        around: &Surroundings<S, D, CAP>,
+        others: Option<&[(usize, S)]>,
     ) -> Solution<S, D> {
+        let Next { x, wanted, speed, dt, .. } = *next;
         // A surface that cannot be kept away from in time alone cannot be kept away from along with others.
-        if !(fastest > speed) {
+        if others.is_some() || !(fastest > speed) {
             // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
             let at = x + best.velocity * dt;
-            let step = speed * dt * S::from_f64(2.0);
-            let there = View { x, at: &at, step, approach: S::one(), skin: skin(x) };
+            let step = speed * dt;
+            let view = match others {
+                None => View { at: &at, step: step + step, approach: S::one(), near: &next.around.near },
+                Some(near) => View { at: x, step, approach: S::one(), near },
+            };
             let mut seen = HalfSpaces::new(speed);
-            self.look(&there, wanted, speed, dt, table, around, &mut seen);
+            self.look(next, &view, &mut seen);
+            if others.is_some() {
+                return next.within_walls(&mut seen).map_or(best, |velocity| Solution::found(velocity, wanted));
+            }
             if let Some(velocity) = seen.allowed(wanted) {
                 return Solution::found(velocity, wanted);
             }
         }
         // The skin is no core: what keeps the next sample out of the cores themselves will do.
-        if Self::clear(&(x + best.velocity * dt), rounding(x, BARE), table, around) {
+        if next.is_clear(&(x + best.velocity * dt), rounding(x, BARE), true) {
             return Solution::found(best.velocity, wanted);
         }
-        if Self::clear(x, S::zero(), table, around) { Solution::found(Vector::zeros(), wanted) } else { best }
-    }
-
-    /// Is a place outside of every core, farther than `rounding`, m?
-    fn clear<const D: usize, const CAP: usize>(
-        place: &Vector<S, D>,
-        rounding: S,
-        table: &Table<S, D, CAP>,
-        around: &Surroundings<S, D, CAP>,
-    ) -> bool {
-        let outside = |(index, _): &(usize, S)| {
-            table.at(*index).is_none_or(|o| {
-                let gamma = o.gamma(place);
-                gamma >= S::one() && (rounding == S::zero() || !o.is_near(gamma, rounding))
-            })
-        };
-        let share = rounding / table.scan().radius();
-        around.near.iter().all(outside) && !(table.scan().gamma(place) < (S::one() + share) * (S::one() + share))
+        if next.is_clear(x, S::zero(), true) {
+            return Solution::found(Vector::zeros(), wanted);
+        }
+        if others.is_some() || !next.table.has_round_walls() {
+            return best;
+        }
+        // By itself, for there is no other way not to have what it looks at twice in the code.
+        let mut others = next.around.near.clone();
+        others.retain(|(index, _)| next.table.at(*index).is_some_and(|o| !o.is_round_wall()));
+        self.otherwise(next, best, fastest, Some(&others))
     }
 
     /// The half-spaces that are seen from one place, into `all`.
-    #[allow(clippy::too_many_arguments, reason = "what is seen, from where, and where to put it")]
     fn look<const D: usize, const CAP: usize>(
         &self,
+        next: &Next<'_, S, D, CAP>,
         view: &View<'_, S, D>,
-        wanted: &Vector<S, D>,
-        speed: S,
-        dt: S,
-        table: &Table<S, D, CAP>,
-        around: &Surroundings<S, D, CAP>,
         all: &mut HalfSpaces<S, D>,
     ) {
-        let skin = view.skin;
-        let rate = S::one() / dt;
-        let gone = view.at - view.x;
+        let skin = next.skin;
+        let rate = S::one() / next.dt;
+        let gone = view.at - next.x;
         let mut keep = |normal: Vector<S, D>, gap: S| {
             let room = gap - skin;
             let share = if room > S::zero() {
@@ -184,34 +178,94 @@ impl<S: Scalar> Guard<S> {
             };
             all.add(HalfSpace { normal, offset: (normal.dot(&gone) - room * share) * rate });
         };
-        let wish = wanted * dt - gone;
-        for (index, reach) in &around.near {
-            if let Some(obstacle) = table.at(*index) {
+        let wish = next.wanted * next.dt - gone;
+        for (index, reach) in view.near {
+            if let Some(obstacle) = next.table.at(*index) {
                 let reach = *reach + view.step;
                 let from = Outlook { at: view.at, wish: &wish, step: view.step, reach, share: view.approach };
                 obstacle.keep_out(&from, &mut keep);
             }
         }
-        if !table.scan().points().is_empty() {
-            let blur = blur(table.scan().radius());
-            let reach = self.reach(view.x, speed, dt) + view.step + blur;
-            table.scan().keep_out(view.at, reach, |normal, gap| keep(normal, gap - blur));
+        let scan = next.table.scan();
+        if !scan.points().is_empty() {
+            let blur = blur(scan.radius());
+            let reach = self.reach(next.x, next.speed, next.dt) + view.step + blur;
+            scan.keep_out(view.at, reach, |normal, gap| keep(normal, gap - blur));
         }
+    }
+}
+
+/// The step to the next sample.
+struct Next<'a, S: Scalar, const D: usize, const CAP: usize> {
+    /// The robot, m.
+    x: &'a Vector<S, D>,
+    /// What is wanted, m/s.
+    wanted: &'a Vector<S, D>,
+    /// The limit, m/s.
+    speed: S,
+    /// Its time, s.
+    dt: S,
+    /// What surfaces are kept away, m.
+    skin: S,
+    /// What is there at the next sample.
+    table: &'a Table<S, D, CAP>,
+    /// What was seen from x at this one.
+    around: &'a Surroundings<S, D, CAP>,
+}
+
+impl<S: Scalar, const D: usize, const CAP: usize> Next<'_, S, D, CAP> {
+    /// Where walls leave less room than a step can bend: tangents of their free spaces, each with all of it on one side, are gathered from where one
+    /// velocity after the other leads, until one leads inside. What the others ask for is in `seen`.
+    fn within_walls(&self, seen: &mut HalfSpaces<S, D>) -> Option<Vector<S, D>> {
+        let Next { x, wanted, dt, skin, .. } = *self;
+        let bare = rounding(x, BARE);
+        let (mut at, mut velocity) = (*x, Vector::zeros());
+        for _ in 0..TANGENTS {
+            let mut within = true;
+            for wall in self.near().filter(|o| o.is_round_wall()) {
+                wall.tangent(&at, |normal, gap| {
+                    within &= gap >= bare;
+                    let offset = (normal.dot(&(at - x)) + skin - gap) / dt;
+                    seen.add(HalfSpace { normal, offset });
+                });
+            }
+            if within && self.is_clear(&at, bare, false) {
+                return Some(velocity);
+            }
+            velocity = seen.allowed(wanted)?;
+            at = x + velocity * dt;
+        }
+        None
+    }
+
+    /// The obstacles that may be reached.
+    fn near(&self) -> impl Iterator<Item = &Obstacle<S, D>> {
+        self.around.near.iter().filter_map(|(index, _)| self.table.at(*index))
+    }
+
+    /// Is a place outside of every core, farther than `rounding`, m? Without `walls`, those whose free space is convex do not count.
+    fn is_clear(&self, place: &Vector<S, D>, rounding: S, walls: bool) -> bool {
+        let outside = |o: &Obstacle<S, D>| {
+            let gamma = o.gamma(place);
+            gamma >= S::one() && (rounding == S::zero() || !o.is_near(gamma, rounding))
+        };
+        let scan = self.table.scan();
+        let share = rounding / scan.radius();
+        self.near().filter(|o| walls || !o.is_round_wall()).all(outside)
+            && !(scan.gamma(place) < (S::one() + share) * (S::one() + share))
     }
 }
 
 /// From where surfaces are looked at.
 struct View<'a, S: Scalar, const D: usize> {
-    /// The robot, m.
-    x: &'a Vector<S, D>,
-    /// The place to look from, m.
+    /// The place, m.
     at: &'a Vector<S, D>,
     /// No sample is farther from there, m.
     step: S,
     /// The share of the distance that may be used up.
     approach: S,
-    /// What surfaces are kept away, m.
-    skin: S,
+    /// What counts: places in the table, each with how far to look for its surface, m.
+    near: &'a [(usize, S)],
 }
 
 /// The half-spaces of one tick that any velocity could violate, and the speed up to which those that found no room cannot be.

@@ -315,6 +315,13 @@ fn opposite<S: Scalar>(ahead: S, aside: S) -> S {
     S::one() + aside.abs() / (ahead * S::from_f64(OPPOSITE))
 }
 
+/// True. Rare as well: a branch that is not taken is cheaper than a flag in every round.
+#[cold]
+#[inline(never)]
+fn unusable() -> bool {
+    true
+}
+
 /// Mean speed, and mean direction as a mean of angles to f: averaging velocities themselves could cancel to a
 /// standstill.
 ///
@@ -381,7 +388,9 @@ impl<S: Scalar, const D: usize> DirectionalMean<S, D> {
         let distance = gamma - one;
         let weight = of(self.nearest).over_where(of(self.nearest).below(distance), distance, one);
         let weight = S::Lanes::select(has, weight, zero);
-        self.unusable |= S::Lanes::any_but(has, usable);
+        if S::Lanes::any_but(has, usable) {
+            self.unusable = unusable();
+        }
         // As seen along f: ahead, and across it; how much that is, in the plane with a sign, counter-clockwise.
         let forward: [S::Lanes; D] = from_fn(|d| of(self.forward[d]));
         let ahead = S::Lanes::dot(velocity, &forward);
@@ -461,3 +470,5 @@ fn size<S: Scalar, L: Lanes<S, N>, const N: usize, const D: usize>(v: &[L; D]) -
 mod closed_form;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod weights;

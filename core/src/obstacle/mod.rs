@@ -288,6 +288,29 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         });
     }
 
+    /// Is it a wall whose free space is convex?
+    pub(crate) fn is_round_wall(&self) -> bool {
+        self.spec.wall && self.body.pieces().is_none()
+    }
+
+    /// Calls `keep(n, gap)` for the half-space n.delta >= -gap of displacements from x that has all of such a wall's free space inside: of the tangent
+    /// to the gauge, lambda + grad lambda.delta <= 1. None at the centre.
+    pub(crate) fn tangent(&self, x: &Vector<S, D>, keep: impl FnOnce(Vector<S, D>, S)) {
+        let u = self.scaled(x);
+        let (gamma, direction) = self.body.level(&self.spec.shape, &u);
+        let gauge = root(gamma, self.body.power());
+        let length = norm(&direction);
+        // The steepest scale, for in fixed point the reciprocals of short lengths have few digits.
+        let steepest = self.steepest();
+        let outward = (direction / length).zip_map(&self.hard, |n, hard| n * (hard / steepest));
+        let slope = norm(&outward);
+        if gauge > S::zero() && length > S::zero() && slope > S::zero() {
+            // grad lambda . u = lambda
+            let gap = (direction / length).dot(&u) * (S::one() / gauge - S::one()) / steepest / slope;
+            keep(times(&self.spec.rotation, &(outward / -slope)), gap - self.blur);
+        }
+    }
+
     /// The same for an ellipsoid with p = 1: the half-space where the ray from the centre leaves the surface, as for
     /// other superellipsoids.
     fn keep_out_of_ellipsoid(&self, x: &Vector<S, D>, mut keep: impl FnMut(Vector<S, D>, S)) {
@@ -300,12 +323,17 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         // Scaled, so that squares stay within range; only the direction counts.
         let t = u / largest;
         let size = norm(&t);
-        let shortest = one / self.slimmest;
-        let normal = t.zip_map(&self.hard, |t, inverse| t * (inverse * shortest));
+        // In fixed point a short axis' reciprocal has no square.
+        let (normal, unit) = if S::EPSILON * S::EPSILON > S::zero() {
+            (t.component_mul(&self.hard), one)
+        } else {
+            let shortest = one / self.slimmest;
+            (t.zip_map(&self.hard, |t, inverse| t * (inverse * shortest)), shortest)
+        };
         let inverse = one / norm(&normal);
         keep(
             times(&self.spec.rotation, &(normal * inverse)),
-            size * (largest * size - one) * shortest * inverse - self.blur,
+            size * (largest * size - one) * unit * inverse - self.blur,
         );
     }
 

@@ -66,7 +66,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let lean = root.map_or_else(Vector::zeros, |root| root - self.reference());
         self.leans = !is_zero(&lean);
         self.sort();
-        self.local_lean = transposed_times(&self.spec.rotation, &lean);
+        (self.lean, self.local_lean) = (lean, transposed_times(&self.spec.rotation, &lean));
         self.place_reference();
     }
 
@@ -76,19 +76,20 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             Some(x) => (self.local(x), self.hard),
             None => (self.spec.reference, self.unit.map(|unit| S::one() / unit)),
         };
-        (self.leans, self.local_lean) = (false, Vector::zeros());
+        (self.leans, self.lean, self.local_lean) = (false, Vector::zeros(), Vector::zeros());
+        self.offset = Vector::zeros();
         self.sort();
         self.place_reference();
     }
 
     /// A core that is smaller than it was has its reference point nearer to its centre, for it must not leave it.
     pub(super) fn place_reference(&mut self) {
-        self.lean = if self.leans { times(&self.spec.rotation, &self.local_lean) } else { Vector::zeros() };
-        if is_zero(&self.local_reference) {
-            self.offset = Vector::zeros();
-            return;
+        if self.leans {
+            self.lean = times(&self.spec.rotation, &self.local_lean);
         }
-        let shrunk = self.chosen_at.zip_map(&self.hard, |then, now| if now > then { then / now } else { S::one() });
-        self.offset = times(&self.spec.rotation, &self.local_reference.component_mul(&shrunk));
+        if !is_zero(&self.local_reference) {
+            let shrunk = self.chosen_at.zip_map(&self.hard, |then, now| if now > then { then / now } else { S::one() });
+            self.offset = times(&self.spec.rotation, &self.local_reference.component_mul(&shrunk));
+        }
     }
 }

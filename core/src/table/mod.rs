@@ -117,6 +117,8 @@ pub struct Table<S: Scalar, const D: usize, const CAP: usize> {
     entries: heapless::Vec<Entry<S, D>, CAP>,
     clusters: Clusters<CAP>,
     scan: Scan<S, D>,
+    /// Is there a wall whose free space is convex?
+    round_walls: bool,
     revision: u32,
 }
 
@@ -129,7 +131,13 @@ impl<S: Scalar, const D: usize, const CAP: usize> Default for Table<S, D, CAP> {
 impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     /// An empty table.
     pub fn new() -> Self {
-        Self { entries: heapless::Vec::new(), clusters: Clusters::new(), scan: Scan::default(), revision: 0 }
+        Self {
+            entries: heapless::Vec::new(),
+            clusters: Clusters::new(),
+            scan: Scan::default(),
+            round_walls: false,
+            revision: 0,
+        }
     }
 
     /// Puts an obstacle in, or in the place of the one with the same identifier. `age` is how many seconds ago it was
@@ -163,6 +171,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             }
         };
         self.clusters.changed(index, &mut self.entries);
+        self.count_walls();
         self.revision = self.revision.wrapping_add(1);
         Ok(())
     }
@@ -175,6 +184,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         self.entries.swap_remove(index);
         let last = self.entries.len();
         self.clusters.removed(index, last, &mut self.entries);
+        self.count_walls();
         self.revision = self.revision.wrapping_add(1);
         true
     }
@@ -191,6 +201,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     pub fn clear(&mut self) {
         self.entries.clear();
         self.clusters = Clusters::new();
+        self.count_walls();
         self.scan = Scan::default();
         self.revision = self.revision.wrapping_add(1);
     }
@@ -330,6 +341,15 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         }
         (around.gamma, around.nearest) = (gamma, nearest.map(Entry::id));
         (around.velocity, around.unusable) = modulation.finish(of_obstacles, points.as_ref());
+    }
+
+    /// Is there a wall whose free space is convex?
+    pub(crate) fn has_round_walls(&self) -> bool {
+        self.round_walls
+    }
+
+    fn count_walls(&mut self) {
+        self.round_walls = self.entries.iter().any(|e| e.obstacle.is_round_wall());
     }
 
     /// The obstacle at this place in the table.

@@ -2,7 +2,7 @@
 
 use crate::world::numbers;
 use crate::{GAIN, Line, turning};
-use pliant_core::{Obstacle, RobotState, Scalar, Shape, Vector};
+use pliant_core::{Obstacle, RobotState, Scalar, Scan, Shape, Vector};
 use std::f64::consts::PI;
 
 /// A bound on the slope, 1/s, where no gauge is steeper than [`STEEP`] and no normal turns faster than a smooth body's. Across a shell the push rises from 0
@@ -59,9 +59,28 @@ impl<S: Scalar, const D: usize> Line<'_, S, D> {
             let t = (u - n * n.dot(&u)).norm() - 0.01 * f;
             longest * (modulated + (u.norm() + 0.01 * f) * rate(o)) / t.max(0.02 * f).max(1e-9)
         };
-        let bend = smooth + polygons.map(past).sum::<f64>();
+        let bend = smooth + polygons.map(past).sum::<f64>() + f * points_rate(self.controller.table().scan(), x);
         [bend, smooth + 2.6 * modulated + soft.iter().map(push).sum::<f64>()]
     }
+}
+
+/// How much of f the points of a scan bend off a metre, 1/m. With weights w_i, sum_i w_i = 1, of which each changes by w_i (a_i - sum_j w_j a_j), a_i =
+/// |grad Gamma_i|/(Gamma_i - 1), nbar changes by no more than K = sum_i w_i (1/|x - p_i| + 2 a_i). Of u + (|nbar|/Gamma) (u - 2 (n.u) n), where n turns by K/|nbar|,
+/// the rest changes by 3 (K/Gamma + |grad Gamma|/Gamma^2) + 4 K/Gamma times |u|: nowhere steeper where nbar vanishes.
+fn points_rate<S: Scalar, const D: usize>(scan: &Scan<S, D>, x: &Vector<S, D>) -> f64 {
+    let radius = scan.radius().to_f64();
+    let away: Vec<f64> = scan.points().iter().map(|p| (numbers(x) - numbers(p)).norm()).collect();
+    let least = away.iter().fold(f64::MAX, |m, a| m.min(*a)) / radius;
+    if !(least > 1.0) || away.is_empty() {
+        return 0.0;
+    }
+    let (mut sum, mut turns) = (0.0, 0.0);
+    for away in away {
+        let distance = (away / radius).powi(2) - 1.0;
+        sum += 1.0 / distance;
+        turns += (1.0 / away + 2.0 * (2.0 * away / (radius * radius)) / distance) / distance;
+    }
+    7.0 * turns / sum / (least * least) + 3.0 * 2.0 / (radius * least.powi(3))
 }
 
 /// |g| |r| / (g.r), with g.r as little as there may be left of it.

@@ -11,14 +11,20 @@ struct Side<const D: usize> {
 }
 
 /// All that is asked of one velocity.
-pub struct Asked<const D: usize> {
+pub struct Asked<S: Scalar, const D: usize> {
     sides: Vec<Side<D>>,
+    /// Those whose free space is convex.
+    walls: Vec<Obstacle<S, D>>,
+    x: Vector<f64, D>,
     speed: f64,
+    dt: f64,
+    /// From a wall, m.
+    clearance: f64,
     /// Is the robot outside of every core there will be where it is?
     pub may_stand: bool,
     /// And farther from each than the guard keeps it?
     pub undisturbed: bool,
-    /// Is a polygon or a wall so near that it may ask for something? Then there is more to fulfil than `sides`.
+    /// Is a polygon, or one as a wall, so near that it may ask for something? Then there is more to fulfil than `sides`.
     pub more: bool,
 }
 
@@ -30,14 +36,10 @@ struct Rounding {
     normal: f64,
 }
 
-impl<const D: usize> Asked<D> {
+impl<S: Scalar, const D: usize> Asked<S, D> {
     /// By `controller` after its tick at `state`: then its obstacles are those of the next sample. Every demand is made a little stronger than the
     /// guard's, by what rounding may have done to that.
-    pub fn new<S: Scalar, const CAP: usize>(
-        controller: &Controller<S, D, CAP>,
-        state: &RobotState<S, D>,
-        dt: f64,
-    ) -> Self {
+    pub fn new<const CAP: usize>(controller: &Controller<S, D, CAP>, state: &RobotState<S, D>, dt: f64) -> Self {
         let x = numbers(state.position());
         let settings = controller.settings();
         let speed = settings.limits.speed.to_f64();
@@ -46,7 +48,9 @@ impl<const D: usize> Asked<D> {
         let skin = (16.0 * eps * size).max(1.0 / 65536.0);
         let rounding = Rounding { distance: 4.0 * eps, normal: 64.0 * eps };
         let may_stand = gamma(controller, state.position()) >= S::one();
-        let mut asked = Self { sides: Vec::new(), speed, may_stand, undisturbed: true, more: false };
+        let (sides, walls) = (Vec::new(), Vec::new());
+        let mut asked =
+            Self { sides, walls, x, speed, dt, clearance: 2.0 * skin, may_stand, undisturbed: true, more: false };
         let mut side = |normal: Vector<f64, D>, gap: f64| {
             let gap = gap - rounding.distance;
             // What a step cannot reach asks for nothing.
@@ -65,7 +69,7 @@ impl<const D: usize> Asked<D> {
                     // The curve of the wall within a step takes at most 1.2 p (2p - 1) L^2 of 1 - gamma, with p = 3 and L = 2 mm/0.7 m 1.5e-4, and of a
                     // box whose corners have a radius of 0.2 m 2e-5 m: nothing where the gauge is below 0.98. Its rate of approach asks for more.
                     undisturbed &= o.gamma(state.position()).to_f64() > 1.0 / (0.98 * 0.98);
-                    more = true;
+                    asked.walls.push(o.clone());
                 }
                 Shape::Polygon(polygon) => {
                     // One of its pieces' sides, that with most room for what is wanted. A point at a distance d from a piece is at least d sin(a/2) beyond
@@ -108,12 +112,13 @@ impl<const D: usize> Asked<D> {
     pub fn search(&self) -> Option<Vector<f64, D>> {
         let mut u = Vector::<f64, D>::zeros();
         for _ in 0..300 {
-            let worst = self.sides.iter().map(|s| (s.offset - s.normal.dot(&u), s));
-            let (violation, side) = worst.max_by(|a, b| a.0.total_cmp(&b.0))?;
+            let sides = self.sides.iter().map(|s| (s.offset - s.normal.dot(&u), s.normal));
+            let walls: Vec<_> = self.walls.iter().map(|wall| self.beyond(wall, &u)).collect::<Option<_>>()?;
+            let (violation, normal) = sides.chain(walls).max_by(|a, b| a.0.total_cmp(&b.0))?;
             if violation <= 0.0 {
                 return Some(u);
             }
-            u += side.normal * (violation * 1.5);
+            u += normal * (violation * 1.5);
             let length = u.norm();
             let most = self.speed * (1.0 - 1e-6);
             if length > most {
@@ -122,12 +127,33 @@ impl<const D: usize> Asked<D> {
         }
         None
     }
+
+    /// How far beyond a convex free space, less a clearance, a velocity leads, m/s, and the normal inwards there: the gauge of the free space is convex, so
+    /// the tangent plane of its level has all of it on its other side.
+    fn beyond(&self, wall: &Obstacle<S, D>, u: &Vector<f64, D>) -> Option<(f64, Vector<f64, D>)> {
+        let p = power(wall);
+        let at = (self.x + u * self.dt).map(S::from_f64);
+        let gamma = wall.gamma(&at).to_f64();
+        let gradient = numbers(&wall.gradient(&at));
+        let lambda = gamma.powf(-0.5 / p);
+        let slope = gradient.norm() * lambda / (2.0 * p * gamma);
+        if slope > 0.0 && slope.is_finite() {
+            return Some(((lambda - 1.0) / slope / self.dt + self.clearance / self.dt, gradient.normalize()));
+        }
+        // At its centre nothing is asked; far outside it cannot be told.
+        (gamma > 1.0).then(|| (-f64::MAX, Vector::zeros()))
+    }
+}
+
+/// p: Gamma is the gauge to the power of 2p.
+fn power<S: Scalar, const D: usize>(o: &Obstacle<S, D>) -> f64 {
+    if let Shape::Ellipsoid { curvature, .. } = o.spec().shape { f64::from(curvature) } else { 1.0 }
 }
 
 /// The supporting half-space of a convex core and how far x is from it, m: with the gauge lambda = Gamma^(1/2p) the normal is along its gradient, and
 /// the distance (lambda - 1)/|grad lambda|. Nothing far away; no one side at the very centre.
 fn supporting<S: Scalar, const D: usize>(o: &Obstacle<S, D>, x: &Vector<S, D>) -> Option<(Vector<f64, D>, f64)> {
-    let p = if let Shape::Ellipsoid { curvature, .. } = o.spec().shape { f64::from(curvature) } else { 1.0 };
+    let p = power(o);
     let gamma = o.gamma(x).to_f64();
     let lambda = gamma.powf(0.5 / p);
     // 2.3 times the 45 mm of the thinnest body are farther than 2 mm a step can come too near at a rate of approach of 0.02; and in fixed point an

@@ -10,6 +10,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 pub mod judge;
+pub mod room;
 pub mod scene;
 
 pub type Random = ChaCha8Rng;

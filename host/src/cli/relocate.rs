@@ -7,7 +7,7 @@ use serde_json::json;
 use super::{Finished, Point, number, print_json};
 use crate::error::{Error, Outcome};
 use crate::learn::memory;
-use crate::model::{Provenance, Similarity, Text};
+use crate::model::{Provenance, Similarity, SimilarityError, Text};
 
 /// Options of `pliant move`.
 #[derive(Clone, Debug, clap::Args)]
@@ -46,6 +46,11 @@ fn factor(text: &str) -> Result<f64, String> {
     number::within(text, 1e-3..=1e3, "0.001 to 1000")
 }
 
+/// An error that names the option at fault.
+fn of(option: &'static str) -> impl Fn(SimilarityError) -> Error {
+    move |e| Error::bad_input(format!("{option}: {e}"))
+}
+
 pub(super) fn main(args: &Args, json: bool) -> Finished {
     if args.attractor.is_none() && args.start.is_none() && args.scale.is_none() && args.turn.is_none() {
         let help = "say where to by --attractor or --start, how large by --scale, which way by --turn";
@@ -55,20 +60,20 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     let model = text.model()?;
     let mut by = Similarity::identity(model.dimension);
     if let Some(Point(attractor)) = &args.attractor {
-        by = by.to(attractor)?;
+        by = by.to(attractor).map_err(of("--attractor"))?;
     }
     if let Some(Point(start)) = &args.start {
         let from = args.from.clone().map(|p| p.0).or_else(|| memory::mean_start(&model)).ok_or_else(|| {
             let message = format!("{}: it does not say where its motions begin", args.model.display());
             Error::bad_input(message).with_help("give the old start by --from X,Y[,Z]")
         })?;
-        by = by.with_start(&model, &from, start)?;
+        by = by.with_start(&model, &from, start).map_err(of("--start"))?;
     }
     if let Some(factor) = args.scale {
-        by = by.scaled(factor)?;
+        by = by.scaled(factor).map_err(of("--scale"))?;
     }
     if let Some(turn) = args.turn {
-        by = by.turned(turn.to_radians(), args.axis.as_ref().map(|p| p.0.as_slice()))?;
+        by = by.turned(turn.to_radians(), args.axis.as_ref().map(|p| p.0.as_slice())).map_err(of("--turn"))?;
     }
     // A fault of the model as it is has a place in its file.
     model.is_certified().map_err(|e| text.locate(e))?;

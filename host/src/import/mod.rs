@@ -378,10 +378,11 @@ impl Table<'_> {
         }
     }
 
+    /// What the file says, or the file's own.
     fn name(&self) -> String {
         match self.fields.get("name").map(|f| &f.value) {
             Some(Value::Text(text)) if !text.is_empty() => text.chars().filter(|c| !c.is_control()).take(80).collect(),
-            _ => "imported".into(),
+            _ => Path::new(self.file).file_stem().map_or("imported".into(), |s| s.to_string_lossy().into_owned()),
         }
     }
 

@@ -6,34 +6,40 @@
 //! x(s) = (1 + 2s)(1 - s)^2 x_0 + s(1 - s)^2 T v_0 + s^2 (3 - 2s) x_1 - s^2 (1 - s) T v_1      0 <= s <= 1
 //! ```
 //!
-//! goes through both samples as fast as they do. A velocity longer than three times the chord's would swing the cubic back and forth (Fritsch and
-//! Carlson 1980), so the cubic takes no more of it.
+//! goes through both samples as fast as they do. A velocity longer than three times a neighbouring chord's would swing the cubic back and forth
+//! (Fritsch and Carlson 1980), so it is taken as that long, for the cubics on both sides and for the sample itself: the path is as fast as it says.
 
 use super::reference::Track;
 use nalgebra::SVector;
 
 /// Fewer steps than these are no path: rollouts are compared with it as often.
 const STEPS: usize = 100;
-/// A velocity enters the cubic up to this many chords.
+/// A velocity is taken up to this many times a neighbouring chord's.
 const CHORDS: f64 = 3.0;
 
-/// The same track with the cubic's samples between its own, where these are few; the recorded ones stay as they are.
+/// The same track with the cubic's samples between its own, where these are few; recorded places stay as they are, and velocities that cubics can
+/// have.
 pub fn filled<const D: usize>(track: &Track<D>) -> Track<D> {
     let pieces = STEPS.div_ceil(track.x.len().saturating_sub(1).max(1));
     if pieces < 2 {
         return track.clone();
     }
+    let speed = |i: usize| Some((track.x.get(i + 1)? - track.x[i]).norm() / (track.t[i + 1] - track.t[i]));
+    let taken = |(i, v): (usize, &SVector<f64, D>)| {
+        let slower = i.checked_sub(1).and_then(speed).into_iter().chain(speed(i)).fold(f64::INFINITY, f64::min);
+        v.cap_magnitude(CHORDS * slower)
+    };
+    let v: Vec<_> = track.v.iter().enumerate().map(taken).collect();
     let mut dense = Track { x: vec![], v: vec![], t: vec![], shift: track.shift };
     for i in 0..track.x.len() {
         let (t, x) = (track.t[i], track.x[i]);
         dense.t.push(t);
         dense.x.push(x);
-        dense.v.push(track.v[i]);
+        dense.v.push(v[i]);
         let Some(next) = track.x.get(i + 1) else { break };
         let duration = track.t[i + 1] - t;
         let chord = next - x;
-        let tangent = |v: &SVector<f64, D>| (v * duration).cap_magnitude(CHORDS * chord.norm());
-        let (leave, arrive) = (tangent(&track.v[i]), tangent(&track.v[i + 1]));
+        let (leave, arrive) = (v[i] * duration, v[i + 1] * duration);
         for j in 1..pieces {
             let s = j as f64 / pieces as f64;
             let rest = 1.0 - s;
@@ -75,6 +81,28 @@ mod tests {
         let few = track(&[0.0, 0.25, 1.0], line);
         let all = filled(&few);
         assert!(few.t.iter().all(|t| all.t.contains(t)));
+    }
+
+    /// A long step before a short one, at a velocity that only the long one bears: what the samples say is what the path does, on both sides.
+    #[test]
+    fn velocities_are_those_of_the_path_everywhere() {
+        let x = [0.0, 0.6, 0.61, 0.61, 1.0].map(|x| Vector2::new(1.0 - x, 0.3 * x * x));
+        let v = [0.5, 4.0, 2.0, 1.0, 3.0].map(|v| Vector2::new(-v, 0.2));
+        let track = Track { x: x.to_vec(), v: v.to_vec(), t: vec![0.0, 0.5, 0.8, 1.0, 1.2], shift: 0.0 };
+        let dense = filled(&track);
+        let pieces = (dense.x.len() - 1) / (x.len() - 1);
+        for i in 1..dense.x.len() - 1 {
+            // Slopes at the sample of parabolas through it and the next two, and the two before: exact but for the cubic's third derivative.
+            let slope = |a: usize, b: usize| (dense.x[b] - dense.x[a]) / (dense.t[b] - dense.t[a]);
+            let ahead = (i + 2 < dense.x.len() && (i % pieces) + 2 <= pieces)
+                .then(|| slope(i, i + 1) * 1.5 - slope(i + 1, i + 2) * 0.5);
+            let behind = (i >= 2 && (i - 1) % pieces >= 1).then(|| slope(i - 1, i) * 1.5 - slope(i - 2, i - 1) * 0.5);
+            for measured in [ahead, behind].into_iter().flatten() {
+                assert!((measured - dense.v[i]).norm() < 0.02, "{i}: {measured} {}", dense.v[i]);
+            }
+        }
+        // What no cubic has to give way for stays.
+        assert_eq!((dense.v[0], dense.v[dense.v.len() - 1].norm() > 3.0), (v[0], true));
     }
 
     /// Velocities in mm/s beside positions in m: the path stays near its samples.

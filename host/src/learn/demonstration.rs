@@ -2,6 +2,7 @@
 
 use super::cleaning::{MOST_SAMPLES, Samples};
 use super::error::LearnError;
+use super::outlier;
 use super::smoothing;
 use super::warning::Warning;
 use nalgebra::DVector;
@@ -143,9 +144,25 @@ impl Demonstration {
         if !(size.is_finite() && samples.duration().is_finite()) {
             return fail("its values overflow".into(), "positions of a robot and times in seconds");
         }
+        // As the file counts them.
+        let number = |i: usize| 1 + (0..n).filter(|i| !repeats[*i]).nth(i).unwrap_or(i);
+        let absurd = outlier::velocity(&samples).map(|(i, speed, fastest)| (number(i), samples.t[i], speed, fastest));
         // Given velocities that never go along with the positions cannot be meant, whatever their unit.
         if velocity_factor(&samples).is_some_and(|factor| factor <= 0.0) {
-            return fail("its velocities do not go where its positions do".into(), "velocities along the motion");
+            let problem = match absurd {
+                None => "its velocities do not go where its positions do".into(),
+                Some((sample, t, speed, fastest)) => format!(
+                    "the velocity of sample {sample} (t = {t}) is {speed:.4} m/s, where positions move at {fastest:.4} m/s at most"
+                ),
+            };
+            return fail(problem, "velocities along the motion");
+        }
+        if let Some((i, distance)) = outlier::place(&samples) {
+            let (sample, t) = (number(i), samples.t[i]);
+            warnings.push(Warning::Off { demonstration: name.clone(), sample, t, distance });
+        }
+        if let Some((sample, t, speed, fastest)) = absurd {
+            warnings.push(Warning::Absurd { demonstration: name.clone(), sample, t, speed, fastest });
         }
         if samples.len() < FEW {
             warnings.push(Warning::Few { demonstration: name.clone(), samples: samples.len(), wanted: FEW });
@@ -209,9 +226,14 @@ fn clean(name: &str, mut samples: Samples, size: f64, warnings: &mut Vec<Warning
     let moving = samples.clone().without(&rests);
     // A motion that is all rests is slow, not still.
     let mut samples = if moving.len() >= 2 && moving.size() > 0.5 * size { moving } else { samples };
+    // A step to a sample that is named already is no gap of its own, nor is a factor that comes of one velocity all velocities'.
+    let (off, absurd) = warnings.iter().fold((false, false), |(off, absurd), w| {
+        (off || matches!(w, Warning::Off { .. }), absurd || matches!(w, Warning::Absurd { .. }))
+    });
     if let Some((i, step)) = samples.largest_step()
         && samples.len() > 20
         && step > JUMP * size
+        && !off
     {
         warnings.push(Warning::Jump { demonstration: demonstration(), at: samples.t[i] - begin, part: step / size });
     }
@@ -222,6 +244,7 @@ fn clean(name: &str, mut samples: Samples, size: f64, warnings: &mut Vec<Warning
     }
     if let Some(factor) = velocity_factor(&samples)
         && !(0.5..=2.0).contains(&factor)
+        && !absurd
     {
         warnings.push(Warning::Velocity { demonstration: demonstration(), factor });
     }

@@ -18,6 +18,7 @@ pub mod fit;
 pub mod gmm;
 mod held_out;
 pub mod memory;
+mod outlier;
 pub mod quality;
 pub mod read;
 mod reference;

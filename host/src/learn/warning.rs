@@ -69,6 +69,30 @@ pub enum Warning {
         /// Its part of the size of the motion.
         part: f64,
     },
+    /// One sample lies far off the path.
+    Off {
+        /// Where it comes from: file and number.
+        demonstration: String,
+        /// The sample, from 1.
+        sample: usize,
+        /// Its time as recorded, s.
+        t: f64,
+        /// How far from the line between its neighbours, m.
+        distance: f64,
+    },
+    /// One velocity is far from that of the positions beside it.
+    Absurd {
+        /// Where it comes from: file and number.
+        demonstration: String,
+        /// The sample, from 1.
+        sample: usize,
+        /// Its time as recorded, s.
+        t: f64,
+        /// Its speed, m/s.
+        speed: f64,
+        /// The fastest that positions move, m/s.
+        fastest: f64,
+    },
     /// Tremor or sensor noise that is large against the motion.
     Noise {
         /// Where it comes from: file and number.
@@ -161,6 +185,16 @@ impl fmt::Display for Warning {
                 "{demonstration}: its positions are noisy (standard deviation {:.1} % of its size); the velocities are smoothed, \
                  and more demonstrations help",
                 part * 100.0
+            ),
+            Warning::Off { demonstration, sample, t, distance } => write!(
+                f,
+                "{demonstration}: sample {sample} (t = {t}) lies {distance:.4} m off the path between its neighbours, and is learnt from \
+                 as it is; if it is not meant, leave it out"
+            ),
+            Warning::Absurd { demonstration, sample, t, speed, fastest } => write!(
+                f,
+                "{demonstration}: the velocity of sample {sample} (t = {t}) is {speed:.4} m/s, where positions move at {fastest:.4} m/s at \
+                 most; it is learnt from as it is; if it is not meant, leave it out"
             ),
             Warning::Velocity { demonstration, factor } => write!(
                 f,

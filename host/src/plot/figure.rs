@@ -204,10 +204,7 @@ impl Svg {
 
     /// A line through many places, closed or not.
     pub fn path(&mut self, points: impl IntoIterator<Item = Pixel>, closed: bool, style: &str) {
-        let mut d = String::new();
-        for (i, p) in points.into_iter().enumerate() {
-            let _ = write!(d, "{}{:.2} {:.2}", if i == 0 { "M" } else { "L" }, p.x, p.y);
-        }
+        let d = outline(points);
         let end = if closed { "Z" } else { "" };
         if !d.is_empty() {
             let _ = writeln!(self.body, r#"<path d="{d}{end}" {style}/>"#);
@@ -225,6 +222,13 @@ impl Svg {
         let d = outlines(rings);
         let _ = writeln!(self.body, r#"<clipPath id="{id}"><path d="{d}" clip-rule="evenodd"/></clipPath>"#);
         let _ = writeln!(self.body, r#"<g clip-path="url(#{id})">"#);
+        draw(self);
+        self.body += "</g>\n";
+    }
+
+    /// Draws with a style that all of it has in common.
+    pub fn group(&mut self, style: &str, draw: impl FnOnce(&mut Self)) {
+        let _ = writeln!(self.body, "<g {style}>");
         draw(self);
         self.body += "</g>\n";
     }
@@ -327,14 +331,48 @@ impl Svg {
 }
 
 fn outlines(rings: &[Vec<Pixel>]) -> String {
+    rings.iter().map(|ring| outline(ring.iter().copied()) + "Z").collect()
+}
+
+/// A line as path data: the first place, then steps from one to the next, which take half the room. Steps are between rounded places, so that
+/// rounding does not add up.
+fn outline(points: impl IntoIterator<Item = Pixel>) -> String {
     let mut d = String::new();
-    for ring in rings {
-        for (i, p) in ring.iter().enumerate() {
-            let _ = write!(d, "{}{:.2} {:.2}", if i == 0 { "M" } else { "L" }, p.x, p.y);
+    let mut before: Option<[i64; 2]> = None;
+    for p in points {
+        let place = [p.x, p.y].map(|c| (c * 100.0).round() as i64);
+        let step = before.map_or(place, |b| [place[0] - b[0], place[1] - b[1]]);
+        // One of them with its letter serves for all that follow.
+        match d.len() {
+            0 => d.push('M'),
+            _ if !d.contains('l') => d.push('l'),
+            _ if step[0] >= 0 => d.push(' '),
+            _ => {}
         }
-        d += "Z";
+        push_hundredths(&mut d, step[0]);
+        if step[1] >= 0 {
+            d.push(' ');
+        }
+        push_hundredths(&mut d, step[1]);
+        before = Some(place);
     }
     d
+}
+
+/// A number of hundredths, as short as it gets: `-.5` for -50.
+fn push_hundredths(text: &mut String, hundredths: i64) {
+    let (whole, part) = (hundredths.unsigned_abs() / 100, hundredths.unsigned_abs() % 100);
+    if hundredths < 0 {
+        text.push('-');
+    }
+    if whole > 0 || part == 0 {
+        let _ = write!(text, "{whole}");
+    }
+    match (part, part % 10) {
+        (0, _) => {}
+        (_, 0) => _ = write!(text, ".{}", part / 10),
+        _ => _ = write!(text, ".{part:02}"),
+    }
 }
 
 #[cfg(test)]
@@ -349,6 +387,41 @@ mod tests {
         assert_eq!(axes.pixel(&extent.low), Point2::new(10.0, 120.0));
         assert_eq!(axes.pixel(&extent.high), Point2::new(210.0, 20.0));
         assert_eq!(axes.scale(), 50.0);
+    }
+
+    /// What a renderer makes of path data with one `M` and one `l`.
+    fn places(data: &str) -> Vec<Pixel> {
+        let mut numbers = Vec::new();
+        let mut one = String::new();
+        for c in data.chars().chain([' ']) {
+            let goes_on = c.is_ascii_digit() || c == '.' || one.is_empty();
+            if !goes_on {
+                numbers.push(std::mem::take(&mut one).parse::<f64>().unwrap());
+            }
+            if c.is_ascii_digit() || c == '.' || c == '-' {
+                one.push(c);
+            }
+        }
+        let mut at = Point2::origin();
+        let steps = numbers.chunks(2).map(|p| Vector2::new(p[0], p[1]));
+        let walk = steps.map(|step| {
+            at += step;
+            at
+        });
+        walk.collect()
+    }
+
+    #[test]
+    fn path_data_leads_to_its_places_however_long_it_is() {
+        let spiral = |i: i32| Point2::new(300.0 + 0.013 * f64::from(i) * f64::from(i).sin(), 0.7 * f64::from(i % 37));
+        let line: Vec<Pixel> = (0..5000).map(spiral).collect();
+        let data = outline(line.iter().copied());
+        let drawn = places(&data);
+        assert_eq!((drawn.len(), data.matches(['M', 'l']).count()), (line.len(), 2));
+        assert!(line.iter().zip(&drawn).all(|(a, b)| (a - b).amax() < 0.005 + 1e-9));
+        let corners = [(1.0, -0.5), (1.0, 0.0), (-0.05, 12.3)].map(|(x, y)| Point2::new(x, y));
+        assert_eq!(outline(corners), "M1-.5l0 .5-1.05 12.3");
+        assert_eq!(outline([]), "");
     }
 
     #[test]

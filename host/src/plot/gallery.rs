@@ -83,7 +83,8 @@ pub fn gallery(tiles: &[Tile<'_>], columns: usize, width: f64) -> Result<Figure,
     let all: Vec<&Panel<'_>> = panels.iter().flatten().collect();
     svg.text(Point2::new(EDGE + left, top + 14.0), Anchor::Start, "", "axes: x, y (m)");
     let bottom = legend::draw(&mut svg, &all, Point2::new(EDGE + left, top + 20.0), width - EDGE);
-    Ok(Figure::from_svg(svg.finish(Vector2::new(width, bottom + EDGE))))
+    let cut = panels.iter().zip(&extents).flat_map(|(panels, e)| panels.iter().map(|p| p.cut(e))).sum();
+    Ok(Figure { svg: svg.finish(Vector2::new(width, bottom + EDGE)), cut })
 }
 
 /// Makes all as high over their width as the highest.

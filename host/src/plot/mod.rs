@@ -66,6 +66,8 @@ pub struct Options {
     pub entries: Vec<Vector3<f64>>,
     /// Where others ended that never arrived, m; each gets a square.
     pub lost: Vec<Vector3<f64>>,
+    /// Two opposite corners, m: trajectories that leave the box between them are cut where the axes end, and do not stretch these.
+    pub limit: Option<[Vector3<f64>; 2]>,
     /// How wide trajectories are drawn, px; where they start is marked the larger the wider they are.
     pub line: f64,
 }
@@ -83,6 +85,7 @@ impl Default for Options {
             demonstrations: Vec::new(),
             entries: Vec::new(),
             lost: Vec::new(),
+            limit: None,
             line: 3.2,
         }
     }
@@ -115,6 +118,7 @@ pub enum PlotError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     svg: String,
+    cut: usize,
 }
 
 /// Pixels of a PNG for one of the SVG.
@@ -123,7 +127,12 @@ const PNG_SCALE: f32 = 2.0;
 impl Figure {
     /// A figure from SVG made elsewhere, such as with [`figure`].
     pub fn from_svg(svg: String) -> Self {
-        Self { svg }
+        Self { svg, cut: 0 }
+    }
+
+    /// How many trajectories leave the axes they are drawn in, by a [limit](Options::limit).
+    pub fn cut(&self) -> usize {
+        self.cut
     }
 
     /// The SVG document.
@@ -237,7 +246,8 @@ pub fn scene_figure(scene: &Scene, trajectories: &[Trajectory], options: &Option
     }
     let all: Vec<&Panel<'_>> = views.iter().flatten().collect();
     let bottom = legend::draw(&mut svg, &all, Point2::new(left, top + 6.0), width - EDGE);
-    Ok(Figure { svg: svg.finish(Vector2::new(width, bottom + EDGE)) })
+    let cut = views.iter().zip(&extents).flat_map(|(v, e)| v.iter().map(|p| p.cut(e)).max()).max();
+    Ok(Figure { svg: svg.finish(Vector2::new(width, bottom + EDGE)), cut: cut.unwrap_or(0) })
 }
 
 #[cfg(test)]

@@ -182,7 +182,9 @@ impl<'a> Panel<'a> {
     /// What has to be in the picture.
     pub fn extent(&self) -> Option<Extent> {
         let places = self.scene.starts().iter().map(|p| self.view.project(p)).chain([self.attractor()]);
-        let paths = self.trajectories.iter().flat_map(|t| &t.points).map(|p| self.view.project(&p.position));
+        let inside = |p: &Vector3<f64>| self.options.limit.is_none_or(|[a, b]| a.inf(&b) <= *p && *p <= a.sup(&b));
+        let paths = self.trajectories.iter().flat_map(|t| &t.points).map(|p| p.position).filter(inside);
+        let paths = paths.map(|p| self.view.project(&p));
         let regions = self.seen.iter().flat_map(|s| std::iter::once(&s.core).chain(&s.shell));
         let others = self.options.reference.iter().chain(self.options.demonstrations.iter().flatten());
         let others = others.map(|p| self.view.project(p));
@@ -192,6 +194,12 @@ impl<'a> Panel<'a> {
             scan.points().iter().map(|p| self.view.project(p)).flat_map(move |p| [p - corner, p + corner])
         });
         Extent::around(places.chain(paths).chain(others).chain(shapes).chain(scan).chain(self.aim.iter().copied()))
+    }
+
+    /// How many trajectories leave what is shown.
+    pub fn cut(&self, shown: &Extent) -> usize {
+        let leaves = |t: &&Trajectory| t.points.iter().any(|p| !shown.holds(&self.view.project(&p.position)));
+        self.trajectories.iter().filter(leaves).count()
     }
 
     fn attractor(&self) -> Point2<f64> {

@@ -44,9 +44,22 @@ pub(super) fn draw(
         Stroke::Thin => 1.3,
         Stroke::Dashed => 2.4,
     };
+    if speeds.is_none() && stroke != Stroke::Dashed {
+        let style = format!(
+            r#"fill="none" stroke="{LINE_COLOUR}" stroke-width="{width}" stroke-linecap="round" stroke-linejoin="round""#
+        );
+        return svg.path(thinned(&pixels, 0.1), false, &style);
+    }
+    let cap = if stroke == Stroke::Dashed { "butt" } else { "round" };
+    let common = format!(r#"fill="none" stroke-width="{width}" stroke-linecap="{cap}""#);
+    svg.group(&common, |svg| pieces(svg, points, &pixels, speeds, stroke));
+}
+
+/// A path in pieces of one colour each.
+fn pieces(svg: &mut Svg, points: &[TrajectoryPoint], pixels: &[Pixel], speeds: Option<(f64, f64)>, stroke: Stroke) {
     let (mut from, mut pieces) = (0, 0);
     for i in 1..pixels.len() {
-        // Pieces of one colour each, a few pixels long at least, so that the file stays small.
+        // A few pixels long at least, so that the file stays small.
         let least = if stroke == Stroke::Dashed { 4.5 } else { 2.0 };
         if (pixels[i] - pixels[from]).norm() < least && i + 1 < pixels.len() {
             continue;
@@ -56,12 +69,10 @@ pub(super) fn draw(
         });
         let piece = &pixels[from..=i];
         if stroke != Stroke::Dashed || pieces % 2 == 0 {
-            let cap = if stroke == Stroke::Dashed { "butt" } else { "round" };
             if stroke == Stroke::Dashed {
                 svg.path(piece.iter().copied(), false, BEHIND_CASING);
             }
-            let style = format!(r#"fill="none" stroke="{colour}" stroke-width="{width}" stroke-linecap="{cap}""#);
-            svg.path(piece.iter().copied(), false, &style);
+            svg.path(thinned(piece, 0.04), false, &format!(r#"stroke="{colour}""#));
         }
         (from, pieces) = (i, pieces + 1);
     }

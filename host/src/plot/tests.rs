@@ -296,3 +296,33 @@ fn where_paths_end_before_the_goal_is_marked_and_so_is_what_was_shown() {
         assert!(marked.contains(&format!(">{word}</text>")), "{word}");
     }
 }
+
+#[test]
+fn a_path_beyond_the_limit_is_cut_and_counted_and_stretches_nothing() {
+    let scene = Scene::parse("gap.toml", GAP, Path::new(".")).unwrap();
+    let path = |far: f64| {
+        let bow =
+            (0..=100).map(|i| f64::from(i) / 100.0).map(|s| Vector3::new(0.5 * (1.0 - s), far * s * (1.0 - s), 0.0));
+        Trajectory::from_positions(&bow.collect::<Vec<_>>(), 0.01)
+    };
+    let drawn = |paths: &[Trajectory], limit| {
+        let options = Options { speed: false, clearances: false, streamlines: false, limit, ..Options::default() };
+        let tile = Tile { title: "one".into(), scene: &scene, trajectories: paths, options: options.clone() };
+        let (one, many) = (scene_figure(&scene, paths, &options).unwrap(), gallery(&[tile], 1, 400.0).unwrap());
+        assert_eq!(one.cut(), many.cut());
+        (
+            one.cut(),
+            [one, many].map(|figure| figure.svg().lines().filter(|l| l.starts_with("<text")).collect::<String>()),
+        )
+    };
+    let limit = Some([Vector3::new(-0.2, 0.2, 0.0), Vector3::new(0.6, -0.2, 0.0)]);
+    let near = [path(0.1), path(-0.2)];
+    let all = [path(0.1), path(40.0), path(-0.2)];
+    let shown = drawn(&near, None);
+    assert_eq!((shown.0, &shown), (0, &drawn(&near, limit)), "what is inside is drawn as without it");
+    // All numbers at the axes stay, but for the part of the long path that is within the limit.
+    let cut = drawn(&all, limit);
+    let whole = drawn(&all, None);
+    assert_eq!((cut.0, whole.0), (1, 0));
+    assert!(!cut.1[0].contains(">2<") && whole.1[0].contains(">2<"), "{} {}", cut.1[0], whole.1[0]);
+}

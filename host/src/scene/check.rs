@@ -108,11 +108,8 @@ fn model(
     let error = |problem: String| source.error(Kind::Model, "ds.model", path.span(), problem);
     let (found, text) = read_model(Path::new(path.get_ref()))
         .map_err(|e| error(format!("the model `{}` cannot be read: {e}", path.get_ref())))?;
-    let refused = |e: crate::model::ModelFileError| {
-        error(format!("the model `{}` cannot be used", path.get_ref()))
-            .allowing("a model file whose certificate holds; `pliant check MODEL.toml` says what is wrong with one")
-            .because(e)
-    };
+    let refused =
+        |e: crate::model::ModelFileError| error(format!("the model `{}` cannot be used", path.get_ref())).because(e);
     let text = Text::new(found.display().to_string(), text);
     let model = text.model().map_err(refused)?;
     // The certificate has to hold in whichever precision the scene is going to run.

@@ -93,6 +93,7 @@ impl SceneError {
         self
     }
 
+    /// What is wrong is in another file, which this one names: a person is told as if that one had been read alone, and where it is named.
     pub(super) fn because(mut self, cause: impl Diagnostic + Send + Sync + 'static) -> Self {
         self.0.cause = Some(Box::new(cause));
         self
@@ -141,9 +142,12 @@ impl Source<'_> {
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let d = &*self.0;
+        if let Some(cause) = &d.cause {
+            return cause.fmt(f);
+        }
         f.write_str(&d.file)?;
         if let Some(line) = d.line {
-            write!(f, ":{line}")?;
+            write!(f, ", line {line}")?;
         }
         f.write_str(": ")?;
         if !d.field.is_empty() {
@@ -162,37 +166,26 @@ impl fmt::Debug for SceneError {
 impl std::error::Error for SceneError {}
 
 impl Diagnostic for SceneError {
-    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        let kind = match self.0.kind {
-            SceneErrorKind::Unreadable => "unreadable",
-            SceneErrorKind::Syntax => "syntax",
-            SceneErrorKind::Unknown => "unknown",
-            SceneErrorKind::Missing => "missing",
-            SceneErrorKind::Type => "type",
-            SceneErrorKind::Value => "value",
-            SceneErrorKind::Conflict => "conflict",
-            SceneErrorKind::Dimension => "dimension",
-            SceneErrorKind::Geometry => "geometry",
-            SceneErrorKind::Model => "model",
-        };
-        Some(Box::new(format!("scene::{kind}")))
-    }
-
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        if let (Some(_), Some(line)) = (&self.0.cause, self.0.line) {
+            return Some(Box::new(format!("it is named by {}, line {line}: {}", self.0.file, self.0.field)));
+        }
         self.0.allowed.as_ref().map(|what| Box::new(format!("allowed: {what}")) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.0.line.map(|_| &self.0.source as &dyn SourceCode)
+        match &self.0.cause {
+            Some(cause) => cause.source_code(),
+            None => self.0.line.map(|_| &self.0.source as &dyn SourceCode),
+        }
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        if let Some(cause) = &self.0.cause {
+            return cause.labels();
+        }
         self.0.line?;
         let label = LabeledSpan::at(self.0.span.clone(), "here");
         Some(Box::new(std::iter::once(label)))
-    }
-
-    fn diagnostic_source(&self) -> Option<&dyn Diagnostic> {
-        self.0.cause.as_deref().map(|cause| cause as &dyn Diagnostic)
     }
 }

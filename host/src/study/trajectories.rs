@@ -22,6 +22,8 @@ pub const STARTS: usize = 25;
 const LINE: f64 = 1.2;
 /// How far beyond the path they are drawn, m.
 const AROUND: f64 = 0.05;
+/// How far beyond those places paths stretch a figure, over the size of what the motion passes through; beyond it they are cut.
+const BEYOND: f64 = 0.25;
 
 /// One motion with its obstacles, computed one way, from every start.
 struct Runs {
@@ -30,6 +32,8 @@ struct Runs {
     column: Column,
     scene: Scene,
     drives: Vec<Drive>,
+    /// The part of the world that a figure shows.
+    limit: [Vector2<f64>; 2],
 }
 
 impl Runs {
@@ -57,7 +61,15 @@ impl Runs {
             title: format!("{}, {}", self.skill, if self.obstacles == 1 { "one" } else { "two" }),
             scene: &self.scene,
             trajectories,
-            options: Options { speed: false, clearances: false, entries, lost, line: LINE, ..Options::default() },
+            options: Options {
+                speed: false,
+                clearances: false,
+                entries,
+                lost,
+                limit: Some(self.limit.map(|corner| corner.push(0.0))),
+                line: LINE,
+                ..Options::default()
+            },
         }
     }
 }
@@ -79,10 +91,21 @@ fn bodies(skill: &Skill, two: bool) -> Vec<Body> {
     vec![first, second]
 }
 
+/// The box around the motion's path and so much more, m: its corners.
+fn around(skill: &Skill, more: f64) -> [Vector2<f64>; 2] {
+    let (low, high) = skill.path.iter().fold((skill.start, skill.start), |(l, h), p| (l.inf(p), h.sup(p)));
+    [low.add_scalar(-more), high.add_scalar(more)]
+}
+
+/// What a figure shows at most.
+fn limit(skill: &Skill) -> [Vector2<f64>; 2] {
+    let [low, high] = around(skill, AROUND);
+    around(skill, AROUND + BEYOND * (high - low).max())
+}
+
 /// The start that was shown, and places at random around the path, outside of every core.
 fn starts(skill: &Skill, bodies: &[Body], seed: u64) -> Vec<Vector2<f64>> {
-    let (low, high) = skill.path.iter().fold((skill.start, skill.start), |(l, h), p| (l.inf(p), h.sup(p)));
-    let (low, high) = (low - Vector2::repeat(AROUND), high + Vector2::repeat(AROUND));
+    let [low, high] = around(skill, AROUND);
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut all = vec![skill.start];
     while all.len() < STARTS {
@@ -112,7 +135,7 @@ pub fn study(skills: &Skills, seed: u64, done: &(dyn Fn(usize) + Sync)) -> Resul
         let driving = Driving { ends_at_contact: true, ..Driving::of(Robot::Exact) };
         let drives = world.starts.iter().map(|start| drive(&scene, start, &driving, None)).collect::<Result<_, _>>()?;
         let (skill, obstacles) = (world.skill.name, world.bodies.len());
-        Ok(Runs { skill, obstacles, column: *column, scene, drives })
+        Ok(Runs { skill, obstacles, column: *column, scene, drives, limit: limit(world.skill) })
     })?;
     let title = format!("Motions from {STARTS} places each, with a robot that follows exactly");
     let header =
@@ -148,11 +171,19 @@ pub fn study(skills: &Skills, seed: u64, done: &(dyn Fn(usize) + Sync)) -> Resul
     };
     let mut figures = Vec::new();
     for (name, column) in [("trajectories", Column::Pliant), ("trajectories-letter", Column::ALL[0])] {
+        let figure = figure(&runs, column)?;
+        let cut = match figure.cut() {
+            0 => String::new(),
+            cut => format!(
+                "; {} farther than is shown",
+                if cut == 1 { "1 path goes".into() } else { format!("{cut} paths go") }
+            ),
+        };
         let caption = format!(
-            "Motions past one deformable obstacle and through the overlap of two from {STARTS} places each: {} (with streamlines of its flow, before any guard)",
+            "Motions past one deformable obstacle and through the overlap of two from {STARTS} places each: {} (with streamlines of its flow, before any guard){cut}",
             column.title()
         );
-        figures.push((name, caption, figure(&runs, column)?));
+        figures.push((name, caption, figure));
     }
     let mut numbers = Map::new();
     numbers.insert("trajectories".into(), Value::Array(json));

@@ -99,7 +99,7 @@ fn scenes() {
     for (from, to, line, words) in cases {
         assert!(SCENE.contains(from), "{from}");
         folder.write("bad.toml", SCENE.replacen(from, to, 1));
-        let place = format!("bad.toml:{line}");
+        let place = format!("bad.toml, line {line}");
         let mut all = vec![place.as_str()];
         all.extend_from_slice(words);
         refused(&folder, &["run", "bad.toml", "--stepped", "--headless"], &all);
@@ -111,7 +111,22 @@ fn scenes() {
         .replace("[0.04, 0.04]", "[0.04, 0.04, 0.04]")
         .replace("[0.25, 0.01]", "[0.25, 0.01, 0.0]");
     folder.write("bad.toml", format!("{spatial}rotation = [1.0, 0.1, 0.0, 0.0]\n"));
-    refused(&folder, &["run", "bad.toml"], &["bad.toml:14", "rotation"]);
+    refused(&folder, &["run", "bad.toml"], &["bad.toml, line 14", "rotation"]);
+    // A fault of the model is told as `pliant check` tells it, to the letter, and where the scene names the model.
+    folder.write("model.toml", "format = 1\nname = 7\n");
+    folder
+        .write("bad.toml", SCENE.replace("linear = { attractor = [0.0, 0.0], gain = 1.0 }", "model = \"model.toml\""));
+    let alone = folder.run(&["check", "model.toml"]).stderr;
+    assert!(alone.contains("model.toml, line 2"), "{alone}");
+    let ended = folder.run(&["run", "bad.toml"]);
+    assert_eq!(
+        (ended.code, ended.stderr),
+        (Some(2), format!("{alone}  help: it is named by bad.toml, line 2: ds.model\n"))
+    );
+    let objects = [["check", "model.toml", "--json"], ["run", "bad.toml", "--json"]].map(|a| folder.run(&a).json());
+    for key in ["exit", "message", "file", "line", "column", "causes"] {
+        assert_eq!(objects[0]["error"][key], objects[1]["error"][key], "{key}");
+    }
     refused(&folder, &["run", "missing.toml"], &["missing.toml", "cannot be read"]);
     refused(&folder, &["plot", "good.toml", "-o", "figure.gif"], &["figure.gif", ".svg or .png"]);
 }

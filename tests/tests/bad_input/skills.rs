@@ -142,6 +142,31 @@ fn what_a_person_may_have_meant_is_a_warning() {
     let slow: String = motion(100, 1.0).lines().skip(1).map(|l| format!("{l},0,0\n")).collect();
     folder.write("velocity.csv", "t,x,y,vx,vy\n".to_owned() + &slow.replace(",0,0\n", ",-0.001,-0.001\n"));
     learn("velocity.csv", &["velocities are"]);
+    // One sample that cannot be meant is named, and only it.
+    let jump: Vec<String> = motion(100, 1.0).lines().map(str::to_owned).collect();
+    let with = |line: usize, row: &str| {
+        let mut all = jump.clone();
+        all[line] = row.into();
+        all.join("\n") + "\n"
+    };
+    let t = jump[31].split(',').next().unwrap();
+    folder.write("jump.csv", with(31, &format!("{t},0.9,-0.7")));
+    learn("jump.csv", &[&format!("jump.csv: sample 31 (t = {t}) lies 1.")]);
+    let moving: String = motion(100, 1.0).lines().skip(1).map(|l| l.to_owned() + ",-0.3,-0.2\n").collect();
+    let mut rows: Vec<&str> = moving.lines().collect();
+    let (at, absurd) = (format!("{t},"), format!("{},250,0", jump[31]));
+    let i = rows.iter().position(|row| row.starts_with(&at)).unwrap();
+    rows[i] = &absurd;
+    folder.write("absurd.csv", "t,x,y,vx,vy\n".to_owned() + &rows.join("\n"));
+    refused(
+        &folder,
+        &["learn", "absurd.csv", "-o", "m.toml"],
+        &["absurd.csv: the velocity of sample 31", "is 250.0000 m/s, where positions move at"],
+    );
+    let forward = absurd.replace(",250,0", ",-250,0");
+    rows[i] = &forward;
+    folder.write("absurd.csv", "t,x,y,vx,vy\n".to_owned() + &rows.join("\n"));
+    learn("absurd.csv", &["absurd.csv: the velocity of sample 31", "is 250.0000 m/s, where positions move at"]);
     // The same file in its unit says nothing.
     folder.write("mm.csv", motion(200, 1000.0));
     let ended = folder.run(&["learn", "mm.csv", "--unit", "mm", "-o", "m.toml", "--components", "2"]);
@@ -192,6 +217,10 @@ fn models_of_other_tools() {
     folder.write("good.yml", FOREIGN);
     let ended = folder.run(&["import", "good.yml", "-o", "m.toml", "--json"]);
     assert_eq!((ended.code, ended.json()["lyapunov"].as_str()), (Some(0), Some("found")), "{}", ended.stderr);
+    assert_eq!(ended.json()["name"], "test");
+    // One that has no name is named by its file.
+    folder.write("via-point.yml", FOREIGN.replacen("name: test\n", "", 1));
+    assert_eq!(folder.run(&["import", "via-point.yml", "--json"]).json()["name"], "via-point");
     assert_eq!(folder.run(&["check", "m.toml"]).code, Some(0));
     let cases: &[(&str, &str, &[&str])] = &[
         ("Sigma: [0.01", "Sigma: [x", &["bad.yml, line 6", "Sigma", "`x`"]),
@@ -257,9 +286,9 @@ fn moves_that_cannot_be() {
     let text = fs::read_to_string(folder.0.join("m.toml")).unwrap();
     folder.write("bare.toml", &text[..text.find("[learnt]").unwrap()]);
     let cases: &[(&[&str], &[&str])] = &[
-        (&["--attractor", "1,2,3"], &["attractor has 3 numbers"]),
+        (&["--attractor", "1,2,3"], &["--attractor: attractor has 3 numbers"]),
         (&["--attractor", "1;2"], &["X,Y"]),
-        (&["--attractor", "1e9,0"], &["attractor", "1000"]),
+        (&["--attractor", "1e9,0"], &["--attractor: attractor = 1000000000", "-1000 to 1000 m"]),
         (&["--scale", "0"], &["scale", "0.001 to 1000"]),
         (&["--scale", "NaN"], &["scale"]),
         (&["--turn", "inf"], &["turn"]),

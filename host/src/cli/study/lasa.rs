@@ -11,9 +11,9 @@ use crate::study::lasa::{Found, Task, study};
 
 /// Options of `pliant study lasa`.
 #[derive(Clone, Debug, clap::Args)]
-#[command(allow_negative_numbers = true)]
+#[command(allow_negative_numbers = true, override_usage = "pliant study lasa [OPTIONS] --data <DIR>")]
 pub struct Args {
-    /// Folder with a file of demonstrations for each motion (.mat, .npz, .csv), or a folder of files for each.
+    /// Folder with a file of demonstrations for each motion (.mat, .npz, .csv), or a folder of files for each; it has to be given.
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
     /// Where to write report.md, the tables and the contact sheet.

@@ -67,7 +67,7 @@ fn the_caret_is_under_the_fault() {
     let handler = miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor());
     let mut out = String::new();
     handler.render_report(&mut out, &error).unwrap();
-    assert!(out.contains("dir/bad.toml:13:") && out.contains("help: allowed:"), "{out}");
+    assert!(out.contains("dir/bad.toml, line 13: ") && out.contains("help: allowed:"), "{out}");
 }
 
 #[test]
@@ -95,10 +95,13 @@ fn a_bad_model_is_the_scenes_fault_at_its_line() {
     for (text, word) in [("format = ", "m.toml, line 1: "), (unstable.as_str(), certificate)] {
         let error = model(text).unwrap_err();
         assert_eq!((error.kind(), error.line(), error.field()), (SceneErrorKind::Model, Some(2), "ds.model"));
-        let cause = error.diagnostic_source().unwrap().to_string();
-        assert!(cause.starts_with(word), "{cause}");
-        // Said once: not in the sentence and in its cause.
-        assert!(error.to_string().ends_with("the model `m.toml` cannot be used"), "{error}");
+        // What is read is what `pliant check` says of the model; and where the scene names it.
+        assert!(error.to_string().starts_with(word), "{error}");
+        let source = error.source_code().unwrap();
+        let label = error.labels().unwrap().next().unwrap();
+        assert_eq!(source.read_span(label.inner(), 0, 0).unwrap().name(), Some("m.toml"));
+        assert_eq!(error.help().unwrap().to_string(), "it is named by s.toml, line 2: ds.model");
+        assert!(error.diagnostic_source().is_none(), "said once");
     }
 }
 

@@ -110,7 +110,7 @@ pub(super) fn refused(cases: &[Case]) {
         let message = error.to_string();
         assert_eq!(error.line(), Some(*line), "{case}: {message}");
         assert_eq!(error.field(), *field, "{case}: {message}");
-        assert!(message.starts_with(&format!("dir/bad.toml:{line}: ")), "{case}: {message}");
+        assert!(message.starts_with(&format!("dir/bad.toml, line {line}: ")), "{case}: {message}");
         assert!(message.contains(field), "{case}: {message}");
         let help = error.help().map(|h| h.to_string()).unwrap_or_default();
         assert!(help.len() > "allowed: ".len(), "{case}: no help with {message}");

@@ -198,9 +198,13 @@ fn device_table(all: &[Compared]) -> Table {
     table
 }
 
+/// Is a figure the paper's?
+fn near(measured: Option<f64>, paper: f64) -> Option<bool> {
+    measured.map(|m| (m - paper).abs() <= TOLERANCE)
+}
+
 fn verdicts(skills: &Skills, all: &[Outcome<'_>], places: &Spread, on_device: &[Compared]) -> Vec<Verdict> {
     let claims = Claims::of(all, Column::Pliant.key());
-    let near = |measured: Option<f64>, paper: f64| measured.map(|m| (m - paper).abs() <= TOLERANCE);
     let note = if skills.lasa { "" } else { " (the paper's is on LASA handwriting)" };
     let percent = |x: Option<f64>| format!("{} %", signed(x, 2));
     let find = |id: &str| all.iter().find(|o| o.case.id == id && !matches!(o.column, Column::Letter(_)));
@@ -295,4 +299,22 @@ fn numbers(all: &[Outcome<'_>], places: &Spread, on_device: &[Compared]) -> Map<
         json.insert("devices".into(), on_device.iter().map(one).collect());
     }
     json
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Written out, so that a wider tolerance than the three points that were asked for is seen.
+    #[test]
+    fn a_figure_is_the_papers_within_three_points_and_no_farther() {
+        for (paper, inside, outside) in
+            [(26.34, [23.35, 29.33], [23.33, 29.35]), (-32.32, [-35.31, -29.33], [-35.33, -29.31])]
+        {
+            assert!(paper == PAPER_GAIN || paper == PAPER_CHANGE);
+            assert_eq!(inside.map(|m| near(Some(m), paper)), [Some(true); 2]);
+            assert_eq!(outside.map(|m| near(Some(m), paper)), [Some(false); 2]);
+        }
+        assert_eq!(near(None, PAPER_GAIN), None);
+    }
 }

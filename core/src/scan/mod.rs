@@ -17,6 +17,9 @@
 //! A scan that is older than its time to live grows: R += (ageing growth) dt, up to its hold time (see [`Ageing`]);
 //! it does not move.
 
+#[cfg(test)]
+mod tests;
+
 use crate::obstacle::Sample;
 use crate::table::Ageing;
 use crate::{Scalar, Status, Vector, in_range, norm};
