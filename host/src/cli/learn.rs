@@ -9,7 +9,7 @@ use serde_json::json;
 use super::check::per_second;
 use super::{Finished, number, print_json, progress, warn};
 use crate::error::{Error, Outcome, counted};
-use crate::learn::{Demonstrations, Learnt, Options, Unit, learn_from, memory, read};
+use crate::learn::{Demonstration, Demonstrations, LearnError, Learnt, Options, Unit, learn_from, memory, read};
 use crate::model::ModelFile;
 use crate::output;
 use crate::plot::{self, Portrait};
@@ -66,12 +66,23 @@ fn pace(text: &str) -> Result<f64, String> {
 /// Part of the extent up to which a path error is small, or too large.
 const CLOSE: f64 = 0.02;
 const ROUGH: f64 = 0.05;
+/// Part of the extent by which a rollout may leave the demonstrations' box without a word.
+const WIDE: f64 = 0.1;
+/// The rate sigma times a demonstration's duration from which on the certificate may be what a motion cannot follow, and what to ask for in its place.
+const HURRIED: f64 = 0.5;
+const UNHURRIED: f64 = 0.05;
 /// A pace that far from the demonstrators' is worth a word.
 const OFF_PACE: f64 = 0.15;
 
+fn longest(demonstrations: &Demonstrations) -> f64 {
+    demonstrations.items().iter().map(Demonstration::duration).fold(0.0, f64::max)
+}
+
 /// How good the skill is, and what to do if it is not: a sentence each.
-fn verdict(learnt: &Learnt) -> Vec<String> {
+fn verdict(learnt: &Learnt, sigma: f64) -> Vec<String> {
     let (q, extent) = (&learnt.quality, learnt.demonstrations.extent());
+    let longest = longest(&learnt.demonstrations);
+    let hurried = sigma * longest > HURRIED;
     let percent = |length: f64| format!("{:.1} % of its size", 100.0 * length / extent);
     let mut says = vec![match q.path_error / extent {
         error if error <= CLOSE => "it follows the demonstrations closely".into(),
@@ -88,7 +99,22 @@ fn verdict(learnt: &Learnt) -> Vec<String> {
             q.beside
         ));
     }
-    if learnt.gives_way > CLOSE * extent {
+    // With a rate far too high it is the numbers that leave.
+    if q.excursion > WIDE * extent && !hurried {
+        says.push(format!(
+            "from a place beside the demonstrations it leaves their box by {} on the way: look at the figure, and demonstrate from there as well",
+            percent(q.excursion)
+        ));
+    }
+    let strays = learnt.gives_way > CLOSE * extent || q.path_error > CLOSE * extent;
+    if hurried && strays {
+        says.push(format!(
+            "--sigma {sigma} asks it to come nearer its goal all the time by a factor of {:.2} in the {longest:.3} s it takes: lower it, --sigma {} asks for \
+             little",
+            (sigma * longest).exp(),
+            significant(UNHURRIED / longest)
+        ));
+    } else if learnt.gives_way > CLOSE * extent {
         says.push(format!(
             "the demonstrations move away from their goal on the way, by {} more than a certificate allows: demonstrate a more direct way, \
              or two skills with a goal in between",
@@ -110,6 +136,12 @@ fn verdict(learnt: &Learnt) -> Vec<String> {
     says
 }
 
+/// To two significant digits.
+fn significant(number: f64) -> String {
+    let text = format!("{number:.1e}");
+    text.parse::<f64>().map_or(text, |rounded| rounded.to_string())
+}
+
 /// A skill that does not come to its end from where it was shown is none: nothing is written.
 fn arrives(learnt: &Learnt, options: &Options) -> Result<(), Error> {
     let stranded = learnt.stranded();
@@ -127,6 +159,25 @@ fn arrives(learnt: &Learnt, options: &Options) -> Result<(), Error> {
         "with --sigma {rate} (now {}) the certificate itself promises that it is; better still, demonstrate a more direct way, in more samples",
         options.sigma
     )))
+}
+
+/// A skill as small or as short as this is learnt and certified; one far below is not, for want of digits.
+const SMALL: f64 = 5e-4;
+const SHORT: f64 = 2e-3;
+
+/// Where no motion is found: the rate that was asked for, or the unit of what was given.
+fn unfitted(error: LearnError, sigma: f64, extent: f64, longest: f64) -> Error {
+    match error {
+        LearnError::Fit { .. } if extent < SMALL || longest < SHORT => Error::from(error).with_help(format!(
+            "the demonstrations are {extent:.1e} m large and {longest:.1e} s long: are positions in metres (--unit mm, cm or m says what they are), and \
+             times in seconds?"
+        )),
+        LearnError::Fit { .. } if sigma * longest > HURRIED => Error::from(error).with_help(format!(
+            "--sigma {sigma} asks for too fast an approach over the {longest:.3} s of a demonstration: try --sigma {}",
+            significant(UNHURRIED / longest)
+        )),
+        error => error.into(),
+    }
 }
 
 /// The skill beside its demonstrations.
@@ -173,7 +224,9 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     let bar = progress::bar(json);
     bar.set_message("learning");
     let begin = Instant::now();
-    let mut learnt = learn_from(demonstrations, &options, &|done| bar.set_position((done * 1000.0) as u64))?;
+    let (extent, longest) = (demonstrations.extent(), longest(&demonstrations));
+    let mut learnt = learn_from(demonstrations, &options, &|done| bar.set_position((done * 1000.0) as u64))
+        .map_err(|error| unfitted(error, options.sigma, extent, longest))?;
     let seconds = begin.elapsed().as_secs_f64();
     bar.finish_and_clear();
     arrives(&learnt, &options)?;
@@ -190,8 +243,8 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     if json {
         print_json(&json!({
             "name": learnt.model.name, "model": out, "figure": figure, "dimension": learnt.model.dimension, "k": k, "demonstrations": demonstrations,
-            "rmse_m_s": q.rmse, "e_dot": q.e_dot, "dtwd_m": q.dtwd, "path_error_m": q.path_error, "pace": q.pace, "margin": margin, "verdict": verdict(&learnt),
-            "converged": q.converged, "rollouts": q.rollouts, "robust": q.robust, "beside": q.beside, "certified": true, "seconds": seconds, "warnings": warnings,
+            "rmse_m_s": q.rmse, "e_dot": q.e_dot, "dtwd_m": q.dtwd, "path_error_m": q.path_error, "pace": q.pace, "margin": margin, "verdict": verdict(&learnt, options.sigma),
+            "converged": q.converged, "rollouts": q.rollouts, "robust": q.robust, "beside": q.beside, "excursion_m": q.excursion, "certified": true, "seconds": seconds, "warnings": warnings,
         }));
     } else {
         say!(
@@ -218,7 +271,8 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
             q.robust,
             q.beside
         );
-        for sentence in verdict(&learnt) {
+        say!("  the farthest any of these leaves the box about the demonstrations: {:.1} mm", q.excursion * 1e3);
+        for sentence in verdict(&learnt, options.sigma) {
             say!("  {sentence}");
         }
         say!("  model: {}", out.display());

@@ -5,6 +5,7 @@
 //! to do in a tube around the demonstrations, and tried in other places there.
 
 use super::reference::Track;
+use super::refine::Path;
 use nalgebra::SVector;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -28,6 +29,8 @@ const STEP: f64 = 0.01;
 const TRIED: f64 = 0.1;
 const TRIED_STARTS: usize = 16;
 const TRIED_ALONG: usize = 12;
+/// How far across the motion a demonstration's companions begin, in extents.
+const ACROSS: f64 = 0.02;
 
 /// A point of the unit ball, the inner half of its radius left out.
 fn offset<const D: usize>(rng: &mut ChaCha8Rng) -> SVector<f64, D> {
@@ -57,6 +60,36 @@ pub fn places<const D: usize>(paths: &[&[SVector<f64, D>]], extent: f64) -> Vec<
 fn onward<const D: usize>(track: &Track<D>, i: usize) -> SVector<f64, D> {
     let ahead = track.x[i..].iter().map(|x| x - track.x[i]).find(|d| d.norm() > STEP);
     ahead.map_or_else(SVector::zeros, |d| d.normalize())
+}
+
+/// Directions across one of length one, at right angles to each other.
+fn across<const D: usize>(direction: &SVector<f64, D>) -> Vec<SVector<f64, D>> {
+    let mut axes: Vec<usize> = (0..D).collect();
+    axes.sort_by(|&a, &b| direction[a].abs().total_cmp(&direction[b].abs()));
+    let mut frame = vec![*direction];
+    for &axis in axes.iter().take(D - 1) {
+        let mut e = SVector::<f64, D>::zeros();
+        e[axis] = 1.0;
+        for f in &frame {
+            e -= f * f.dot(&e);
+        }
+        frame.extend(e.try_normalize(1e-9));
+    }
+    frame.split_off(1)
+}
+
+/// Paths that begin about a demonstration's start, at its very first sample and a little to each side of where rollouts begin, and come to it along
+/// the way. Who follows them too has no hairline at the start, beside which the motion goes elsewhere.
+pub fn companions<const D: usize>(track: &Track<D>) -> Vec<Path<D>> {
+    let path = track.after_start();
+    let whole = Path { x: track.x.clone(), duration: track.t[track.t.len() - 1] - track.t[0] };
+    let steps = path.x.len() as f64;
+    let sides = across(&onward(track, track.x.len() - path.x.len())).into_iter().flat_map(|side| [side, -side]);
+    let aside = sides.map(|side| {
+        let x = path.x.iter().enumerate().map(|(i, x)| x + side * (ACROSS * (1.0 - i as f64 / steps))).collect();
+        Path { x, duration: path.duration }
+    });
+    std::iter::once(whole).chain(aside).collect()
 }
 
 /// The demonstration at no less than a share of the mean speed, but near the attractor: a velocity for each place cannot wait.
@@ -124,6 +157,21 @@ mod tests {
             let expected = if x.norm() > HOME { shown.x.max(LEAST_SPEED) } else { shown.x };
             assert!((v - Vector2::new(expected, 0.0)).norm() < 1e-12, "{v} at {x}");
         }
+    }
+
+    #[test]
+    fn companions_begin_about_the_start_and_come_to_the_demonstration() {
+        let all = companions(&line());
+        assert_eq!(all.len(), 3);
+        assert_eq!(all[0].x, line().x);
+        for (path, sign) in all[1..].iter().zip([1.0, -1.0]) {
+            let (first, last) = (path.x[0], path.x[path.x.len() - 1]);
+            assert!((first.y - sign * ACROSS).abs() < 1e-12 && last.norm() < 1e-3, "{first} {last}");
+        }
+        let slanted = nalgebra::Vector3::new(0.6, 0.0, -0.8);
+        let sides = across(&slanted);
+        assert_eq!(sides.len(), 2);
+        assert!(sides[0].dot(&sides[1]).abs() < 1e-12 && sides.iter().all(|s| s.dot(&slanted).abs() < 1e-12));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::fit::Gram;
 use super::gmm::{self, Mixture, Samples};
 use super::quality::{self, Quality, Recording};
 use super::reference::{Track, admissible, follow};
-use super::refine::{Task, Weights, refine};
+use super::refine::{Path, Task, Weights, refine};
 use nalgebra::{SMatrix, SVector};
 
 /// Reference paths and velocities fall a little faster than the rate asked for, so that they lie inside the certificate.
@@ -20,6 +20,13 @@ const SAME_SPEED: f64 = 0.14;
 const SAME_DIRECTION: f64 = 0.034;
 /// What a rollout from beside the demonstrations costs that does not arrive in time.
 const LATE: f64 = 0.3;
+/// Up to this many demonstrations have companions to be followed as well; the starts of more are spread by themselves.
+pub const FEW: usize = 4;
+/// What the companions count in the path's error, against one for the demonstrations.
+const COMPANY: f64 = 3.0;
+/// Steps of a rollout beside a companion, and how many times its duration it has.
+const STEPS: f64 = 100.0;
+const PATIENCE: f64 = 2.0;
 
 /// How samples are grouped to start from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,6 +54,19 @@ impl Effort {
             Self::More => [20, 10, 25],
         }
     }
+}
+
+/// What is tried.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Attempt {
+    /// Number of components.
+    pub components: usize,
+    /// Of samples, to start from.
+    pub grouping: Grouping,
+    /// Of refinement.
+    pub effort: Effort,
+    /// Zero for the first of its kind, another number for other random choices.
+    pub again: u64,
 }
 
 /// What every attempt at one skill shares, in normalised units.
@@ -78,8 +98,10 @@ pub struct Candidate<const D: usize> {
 }
 
 impl<const D: usize> Lesson<'_, D> {
-    /// Learns with this many components; `None` where no start works.
-    pub fn attempt(&self, components: usize, grouping: Grouping, effort: Effort) -> Option<Candidate<D>> {
+    /// Learns so; `None` where no start works.
+    pub fn attempt(&self, attempt: Attempt) -> Option<Candidate<D>> {
+        let Attempt { components, grouping, effort, again } = attempt;
+        let seed = self.seed.wrapping_add(again);
         let rate = self.sigma * INSIDE;
         // No skill waits: where a demonstrator does, most of all at the start, it goes on.
         let going: Vec<_> = self.shown.iter().map(beside::going).collect();
@@ -108,7 +130,7 @@ impl<const D: usize> Lesson<'_, D> {
                 let stride = targets.x.len().div_ceil(350).max(1);
                 let thin = |all: &[SVector<f64, D>]| all.iter().copied().step_by(stride).collect();
                 let few = Samples { x: thin(&targets.x), v: thin(&targets.v) };
-                gmm::fit(&few, components, self.direction, self.seed)
+                gmm::fit(&few, components, self.direction, seed)
             }
         }?;
         let start = Gram::new(&targets, &mixture).solve_for(&self.p, self.sigma, 2).ok()?;
@@ -117,14 +139,20 @@ impl<const D: usize> Lesson<'_, D> {
         // A single component is linear: it lingers nowhere, and the samples alone say what it is.
         if components > 1 {
             let references: Vec<_> = moved.iter().map(|m| m.0.clone()).collect();
-            for (x, v) in beside::tube(&references, self.seed) {
+            for (x, v) in beside::tube(&references, seed) {
                 belief.push(1.0);
                 targets.v.push(admissible(&x, &v, &self.p, rate));
                 targets.x.push(x);
             }
         }
-        let followed: Vec<_> = moved.into_iter().map(|m| m.0.after_start()).collect();
-        let shown: Vec<_> = self.shown.iter().map(Track::after_start).collect();
+        let mut followed: Vec<_> = moved.iter().map(|m| m.0.after_start()).collect();
+        let mut shown: Vec<_> = self.shown.iter().map(Track::after_start).collect();
+        let mut company = vec![];
+        if self.shown.len() <= FEW {
+            followed.extend(moved.iter().flat_map(|m| beside::companions(&m.0)));
+            company.extend(self.shown.iter().flat_map(beside::companions));
+            shown.extend(company.iter().cloned());
+        }
         let [alone, along, to_the_end] = effort.rounds();
         let weights = Weights { path: 0.0, pace: self.pace, ..Weights::default() };
         let mut task = Task { x: &targets.x, v: &targets.v, belief: &belief, tracks: &followed, weights };
@@ -144,7 +172,10 @@ impl<const D: usize> Lesson<'_, D> {
         };
         let recordings: Vec<_> =
             self.shown.iter().map(|t| Recording { t: t.t.clone(), x: t.x.clone(), v: t.v.clone() }).collect();
-        let quality = quality::measure(&motion, &recordings, 1.0);
+        let mut quality = quality::measure(&motion, &recordings, 1.0);
+        if !company.is_empty() {
+            quality.path_error = (quality.path_error + COMPANY * astray(&motion, &company)) / (1.0 + COMPANY);
+        }
         let (score, path) = (score(&quality), quality.path_error / SAME_PATH);
         score.is_finite().then_some(Candidate { field, mixture, score, path })
     }
@@ -152,6 +183,15 @@ impl<const D: usize> Lesson<'_, D> {
 
 fn improve<const D: usize>(field: Field<D>, task: &Task<D>, rounds: usize) -> Field<D> {
     if D == 2 { refine::<D, 10>(field, task, rounds) } else { refine::<D, 19>(field, task, rounds) }
+}
+
+/// The mean distance of rollouts from the paths from whose starts they begin.
+fn astray<const D: usize>(motion: &Motion<D>, paths: &[Path<D>]) -> f64 {
+    let one = |path: &Path<D>| {
+        let (rollout, _) = motion.rollout(&path.x[0], path.duration / STEPS, PATIENCE * path.duration, quality::NEAR);
+        quality::warping_distance(&quality::resample(&path.x), &quality::resample(&rollout)).1
+    };
+    paths.iter().map(one).sum::<f64>() / paths.len().max(1) as f64
 }
 
 /// Errors in multiples of a good model's, and a rollout that does not arrive counts more than any error.

@@ -34,7 +34,7 @@ pub use read::read;
 pub use warning::Warning;
 
 use crate::model::{ComponentFile, FORMAT, ModelFile, Provenance, rounded};
-use candidate::{Candidate, Effort, Grouping, Lesson};
+use candidate::{Attempt, Candidate, Effort, FEW, Grouping, Lesson};
 use evaluate::Motion;
 use gmm::{MAX_COMPONENTS, Mixture};
 use nalgebra::{SMatrix, SVector};
@@ -179,6 +179,10 @@ const ATTEMPTS: [(usize, Grouping, Effort); 5] = [
     (12, Grouping::Mixture, Effort::More),
     (12, Grouping::Segments, Effort::More),
 ];
+/// From few demonstrations a bad start is not made up for by the others: where the path's error, in multiples of a good one's, is beyond this, more
+/// starts are tried, this many times both groupings.
+const AMISS: f64 = 0.75;
+const AGAIN: u64 = 3;
 /// A score that leaves something to wish for.
 const POOR: f64 = 6.0;
 /// How much more than otherwise the path counts among those that are poor: velocities they cannot have, so what is left to choose is where they go.
@@ -192,6 +196,23 @@ fn most_components(demonstrations: &Demonstrations) -> usize {
     (2 + 2 * demonstrations.items().len()).min(demonstrations.samples()).clamp(1, MAX_COMPONENTS)
 }
 
+/// All that may be tried with this many components, or with as many as there may be.
+fn attempts(components: Option<usize>, most: usize, demonstrations: usize) -> Vec<Attempt> {
+    let (kinds, k) = match components {
+        Some(k) => ([(k, Grouping::Mixture, Effort::Usual), (k, Grouping::Segments, Effort::Usual)].to_vec(), k),
+        None => (ATTEMPTS.map(|(k, grouping, effort)| (k.min(most), grouping, effort)).to_vec(), most),
+    };
+    let first = |(components, grouping, effort)| Attempt { components, grouping, effort, again: 0 };
+    let mut all: Vec<_> = kinds.into_iter().map(first).collect();
+    if demonstrations <= FEW {
+        let groupings = [Grouping::Mixture, Grouping::Segments];
+        let more = (1..=AGAIN)
+            .flat_map(|again| groupings.map(|grouping| Attempt { again, ..first((k, grouping, Effort::Usual)) }));
+        all.extend(more);
+    }
+    all
+}
+
 fn learn_in<const D: usize>(
     demonstrations: Demonstrations,
     options: &Options,
@@ -201,10 +222,7 @@ fn learn_in<const D: usize>(
     let scale = Scale::of(&demonstrations, &recordings);
     let tracks = tracks(&recordings, demonstrations.shifts(), &scale);
     let most = most_components(&demonstrations);
-    let attempts: Vec<_> = match options.components {
-        Some(k) => [Grouping::Mixture, Grouping::Segments].map(|grouping| (k, grouping, Effort::Usual)).to_vec(),
-        None => ATTEMPTS.map(|(k, grouping, effort)| (k.min(most), grouping, effort)).to_vec(),
-    };
+    let attempts = attempts(options.components, most, tracks.len());
     progress(0.0);
     let sigma = options.sigma * scale.length / scale.speed;
     let lesson = Lesson {
@@ -217,12 +235,17 @@ fn learn_in<const D: usize>(
     };
     let mut best: Option<(f64, f64, ModelFile)> = None;
     let mut failure = String::from("no mixture fits the samples");
-    for (i, &(k, grouping, effort)) in attempts.iter().enumerate() {
-        if attempts[..i].contains(&(k, grouping, effort)) || i > 2 && best.as_ref().is_some_and(|b| b.0 < POOR) {
+    for (i, &attempt) in attempts.iter().enumerate() {
+        let good = best.as_ref().is_some_and(|b| match attempt {
+            Attempt { again: 1.., .. } => b.1 < AMISS,
+            Attempt { effort: Effort::More, .. } => b.0 < POOR,
+            _ => false,
+        });
+        if good || attempts[..i].contains(&attempt) {
             continue;
         }
-        let follow = if i > 2 { FOLLOW } else { 0.0 };
-        if let Some(candidate) = lesson.attempt(k, grouping, effort) {
+        let follow = if attempt.effort == Effort::More { FOLLOW } else { 0.0 };
+        if let Some(candidate) = lesson.attempt(attempt) {
             let price = 1.0 + PRICE * candidate.mixture.len() as f64;
             let (score, path) = (candidate.score * price, candidate.path * price);
             if best.as_ref().is_none_or(|b| score + follow * path < b.0 + follow * b.1) {

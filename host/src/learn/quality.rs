@@ -42,6 +42,8 @@ pub struct Quality {
     pub robust: usize,
     /// All such rollouts: from the mean start, and from places up to a tenth of the extent beside the starts and the paths.
     pub beside: usize,
+    /// The farthest that one of them, or a rollout from a demonstration's start, leaves the box about the demonstrations and that rollout's start, m.
+    pub excursion: f64,
 }
 
 /// One demonstration.
@@ -92,6 +94,8 @@ pub fn rollout<const D: usize>(
 pub fn measure<const D: usize>(motion: &Motion<D>, recordings: &[Recording<D>], extent: f64) -> Quality {
     let (mut error, mut turn, mut count, mut moving) = (0.0, 0.0, 0usize, 0usize);
     let (mut dtwd, mut path_error, mut pace, mut converged) = (0.0, 0.0, 0.0, 0);
+    let area = Area::of(recordings.iter().flat_map(|r| &r.x));
+    let mut excursion = 0.0_f64;
     for r in recordings {
         for (x, v) in r.x.iter().zip(&r.v).step_by(r.stride()) {
             let f = motion.velocity(x);
@@ -108,6 +112,7 @@ pub fn measure<const D: usize>(motion: &Motion<D>, recordings: &[Recording<D>], 
         let dt = r.step();
         let (rollout, arrived) = rollout(motion, r, extent);
         converged += usize::from(arrived);
+        excursion = excursion.max(area.left_by(&rollout));
         let (sum, mean) = warping_distance(&resample(path), &resample(&rollout));
         dtwd += sum;
         path_error += mean;
@@ -122,7 +127,12 @@ pub fn measure<const D: usize>(motion: &Motion<D>, recordings: &[Recording<D>], 
     let paths: Vec<_> = recordings.iter().map(|r| r.x.as_slice()).collect();
     let longest = recordings.iter().map(Recording::duration).fold(0.0, f64::max);
     let places = beside::places(&paths, extent);
-    let robust = places.iter().filter(|x| in_time(motion, x, longest, extent)).count();
+    let mut robust = 0;
+    for place in &places {
+        let (path, in_time) = from_beside(motion, place, longest, extent);
+        robust += usize::from(in_time);
+        excursion = excursion.max(area.left_by(&path));
+    }
     Quality {
         rmse: error / count.max(1) as f64,
         e_dot: turn / moving.max(1) as f64,
@@ -133,13 +143,45 @@ pub fn measure<const D: usize>(motion: &Motion<D>, recordings: &[Recording<D>], 
         rollouts: recordings.len(),
         robust,
         beside: places.len(),
+        excursion,
     }
 }
 
-/// Whether the motion from here is at the goal after `PATIENCE` times a demonstration's time.
-fn in_time<const D: usize>(motion: &Motion<D>, start: &SVector<f64, D>, duration: f64, extent: f64) -> bool {
+/// The motion from a place beside the demonstrations, and whether it is at the goal after `PATIENCE` times a demonstration's time.
+fn from_beside<const D: usize>(
+    motion: &Motion<D>,
+    start: &SVector<f64, D>,
+    duration: f64,
+    extent: f64,
+) -> (Vec<SVector<f64, D>>, bool) {
     let (path, arrived) = motion.rollout(start, duration / 100.0, PATIENCE * duration, NEAR * extent);
-    arrived || path.last().is_some_and(|x| (x - motion.attractor).norm() <= THERE * extent)
+    let in_time = arrived || path.last().is_some_and(|x| (x - motion.attractor).norm() <= THERE * extent);
+    (path, in_time)
+}
+
+/// The box about all demonstrations, along the axes.
+struct Area<const D: usize> {
+    low: SVector<f64, D>,
+    high: SVector<f64, D>,
+}
+
+impl<const D: usize> Area<D> {
+    fn of<'a>(points: impl Iterator<Item = &'a SVector<f64, D>>) -> Self {
+        let empty = Self { low: SVector::repeat(f64::INFINITY), high: SVector::repeat(f64::NEG_INFINITY) };
+        points.fold(empty, |area, x| area.with(x))
+    }
+
+    fn with(&self, x: &SVector<f64, D>) -> Self {
+        Self { low: self.low.inf(x), high: self.high.sup(x) }
+    }
+
+    /// How far a path leaves it, once it holds the path's start.
+    fn left_by(&self, path: &[SVector<f64, D>]) -> f64 {
+        let Some(start) = path.first() else { return 0.0 };
+        let area = self.with(start);
+        let outside = |x: &SVector<f64, D>| (area.low - x).sup(&(x - area.high)).sup(&SVector::zeros()).norm();
+        path.iter().map(outside).fold(0.0, f64::max)
+    }
 }
 
 /// Points at equal steps along a path.
@@ -204,6 +246,16 @@ mod tests {
         assert_eq!((even[0], even[POINTS - 1]), (path[0], path[3]));
         let step = 2.0 / (POINTS - 1) as f64;
         assert!(even.windows(2).all(|w| (w[1] - w[0]).norm() < step + 1e-12));
+    }
+
+    #[test]
+    fn an_excursion_is_counted_from_the_box_and_the_start() {
+        let area = Area::of([Vector2::new(0.0, 0.0), Vector2::new(1.0, 2.0)].iter());
+        assert_eq!(area.left_by(&[Vector2::new(0.5, 1.0), Vector2::new(1.0, 0.5)]), 0.0);
+        // From outside straight in: no excursion; on outwards: as far as from the start.
+        assert_eq!(area.left_by(&[Vector2::new(1.5, 1.0), Vector2::new(1.0, 0.5)]), 0.0);
+        assert_eq!(area.left_by(&[Vector2::new(1.5, 1.0), Vector2::new(1.75, 0.5)]), 0.25);
+        assert_eq!(area.left_by(&[Vector2::new(0.5, 1.0), Vector2::new(-3.0, 6.0)]), 5.0);
     }
 
     #[test]

@@ -109,6 +109,7 @@ impl HeldOut {
                 rollouts: all.iter().map(|q| q.rollouts).sum(),
                 robust: all.iter().map(|q| q.robust).sum(),
                 beside: all.iter().map(|q| q.beside).sum(),
+                excursion: all.iter().map(|q| q.excursion).fold(0.0, f64::max),
             },
             worst: all.iter().map(|q| q.dtwd).fold(0.0, f64::max),
         })

@@ -114,6 +114,7 @@ fn medians<'a>(all: impl Iterator<Item = &'a Quality> + Clone) -> Option<Quality
         rollouts: all.clone().map(|q| q.rollouts).sum(),
         robust: all.clone().map(|q| q.robust).sum(),
         beside: all.clone().map(|q| q.beside).sum(),
+        excursion: of(|q| q.excursion)?,
     })
 }
 
