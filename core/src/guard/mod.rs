@@ -14,9 +14,9 @@
 //! sample, so no velocity of the obstacle and no second order of its turning enters. Of all u that fulfil every
 //! inequality and |u| <= speed the one nearest to what was wanted is driven. One half-space a core is enough to be
 //! outside and more than is needed: where none fulfils them all, those that hold the cores as seen from where the
-//! least violation leads are tried, without alpha; and in a room that is narrower than a step can bend, tangents of its
-//! wall from several places. Where that fails too, the velocity that violates the worst inequality least is driven, and
-//! the status says so.
+//! least violation leads are tried, without alpha and, but for rounding, without the skin; and in a room that is
+//! narrower than a step can bend, tangents of its wall from several places. Where that fails too, the velocity that
+//! violates the worst inequality least is driven, and the status says so.
 //!
 //! What is exact: superellipsoids, boxes, cylinders, capsules, points of a scan, and polygons, by their convex
 //! pieces. A wall's free space is convex but for polygons; a half-space would let a step end outside of its curve, so
@@ -105,7 +105,7 @@ impl<S: Scalar> Guard<S> {
     ) -> Solution<S, D> {
         let next = Next { x, wanted, speed, dt, skin: skin(x), table, around };
         let mut seen = HalfSpaces::new(speed);
-        let here = View { at: x, step: speed * dt, approach: self.approach, near: &around.near };
+        let here = View { at: x, step: speed * dt, approach: self.approach, skin: next.skin, near: &around.near };
         self.look(&next, &here, &mut seen);
         let best = seen.nearest(wanted);
         if best.feasible { best } else { self.otherwise(&next, best, seen.fastest) }
@@ -121,19 +121,20 @@ impl<S: Scalar> Guard<S> {
         fastest: S,
     ) -> Solution<S, D> {
         let Next { x, wanted, speed, dt, .. } = *next;
+        // The skin is no core: outside of that, by what rounding may do and as much again, is all that has to be.
+        let (bare, skin) = (rounding(x, BARE), rounding(x, BARE + BARE));
         // A surface that cannot be kept away from in time alone cannot be kept away from along with others.
-        if !(fastest > speed) {
+        if !(fastest - (next.skin - skin) / dt > speed) {
             // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
             let (at, step) = (x + best.velocity * dt, speed * dt);
-            let there = View { at: &at, step: step + step, approach: S::one(), near: &next.around.near };
+            let there = View { at: &at, step: step + step, approach: S::one(), skin, near: &next.around.near };
             let mut seen = HalfSpaces::new(speed);
             self.look(next, &there, &mut seen);
             if let Some(velocity) = seen.allowed(wanted) {
                 return Solution::found(velocity, wanted);
             }
         }
-        // The skin is no core: what keeps the next sample out of the cores themselves will do.
-        if next.is_clear(&(x + best.velocity * dt), rounding(x, BARE), true) {
+        if next.is_clear(&(x + best.velocity * dt), bare, true) {
             return Solution::found(best.velocity, wanted);
         }
         if next.is_clear(x, S::zero(), true) {
@@ -152,7 +153,7 @@ impl<S: Scalar> Guard<S> {
         next.near().find(|o| o.is_round_wall())?;
         let mut others = next.around.near.clone();
         others.retain(|(index, _)| next.table.at(*index).is_some_and(|o| !o.is_round_wall()));
-        let here = View { at: x, step: speed * dt, approach: S::one(), near: &others };
+        let here = View { at: x, step: speed * dt, approach: S::one(), skin, near: &others };
         let mut seen = HalfSpaces::new(speed);
         self.look(next, &here, &mut seen);
         let bare = rounding(x, BARE);
@@ -183,7 +184,7 @@ impl<S: Scalar> Guard<S> {
         view: &View<'_, S, D>,
         all: &mut HalfSpaces<S, D>,
     ) {
-        let skin = next.skin;
+        let skin = view.skin;
         let rate = S::one() / next.dt;
         let gone = view.at - next.x;
         let mut keep = |normal: Vector<S, D>, gap: S| {
@@ -259,6 +260,8 @@ struct View<'a, S: Scalar, const D: usize> {
     step: S,
     /// The share of the distance that may be used up.
     approach: S,
+    /// What surfaces are kept away, m.
+    skin: S,
     /// What counts: places in the table, each with how far to look for its surface, m.
     near: &'a [(usize, S)],
 }
