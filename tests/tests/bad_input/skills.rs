@@ -314,3 +314,33 @@ fn a_move_that_changes_nothing_is_refused() {
     refused(&folder, &["move", "m.toml", "-o", "n.toml"], &["m.toml: nothing to change", "--attractor", "--scale"]);
     assert!(!folder.0.join("n.toml").exists());
 }
+
+/// The same motion ten times as slow: a rate that suited it asks too much, the verdict says which to ask for, and that is followed closely.
+#[test]
+fn a_rate_too_high_for_a_slow_demonstration_is_named_and_lowering_it_helps() {
+    let folder = Folder::new("rate");
+    fs::create_dir(folder.0.join("slow")).unwrap();
+    let arch = fs::read_dir(root().join("demos/arch")).unwrap().map(|f| fs::read_to_string(f.unwrap().path()).unwrap());
+    for (i, text) in arch.enumerate() {
+        let mut slow = String::from("t,x,y\n");
+        for row in text.lines().filter(|l| l.starts_with(|c: char| c.is_ascii_digit() || c == '-')) {
+            let mut row = row.split(',').map(|x| x.trim().parse::<f64>().unwrap());
+            let mut next = || row.next().unwrap();
+            slow += &format!("{},{},{}\n", 10.0 * next(), next(), next());
+        }
+        folder.write(&format!("slow/{i}.csv"), slow);
+    }
+    let learnt = |sigma: &str| {
+        let ended = folder.run(&["learn", "slow", "-o", "m.toml", "--sigma", sigma, "--json"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let json = ended.json();
+        let verdict =
+            json["verdict"].as_array().unwrap().iter().map(|v| v.as_str().unwrap()).collect::<Vec<_>>().join("; ");
+        (json["path_error_m"].as_f64().unwrap(), verdict)
+    };
+    let (far, said) = learnt("0.5");
+    let advised =
+        said.split("lower it, --sigma ").nth(1).unwrap_or_else(|| panic!("{said}")).split(' ').next().unwrap();
+    let (near, said) = learnt(advised);
+    assert!(near < 0.2 * far && !said.contains("sigma"), "{near} {far} {advised}: {said}");
+}
