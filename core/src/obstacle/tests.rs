@@ -140,3 +140,29 @@ fn a_first_turn_is_no_jump() {
         }
     }
 }
+
+/// Where products of scaled coordinates leave the numbers' range, a polygon is still as far away.
+#[test]
+fn a_polygon_far_away_is_far_away_in_fixed_point_too() {
+    // One edge passes near the centre, so its normal is long; and the body shrinks.
+    let corners = [[0.0774765, 0.070869], [0.07723, 0.071137], [-0.101133, 0.028231], [-0.02882, -0.100967]];
+    let fixed = corners.map(|v: [f64; 2]| v.map(Fixed::from_f64));
+    for step in 0..2000 {
+        let turn = f64::from(step) * 0.00314;
+        let spec = ObstacleSpec {
+            center: Vector::<Fixed, 2>::zeros(),
+            rotation: rotation::planar(turn).map(Fixed::from_f64),
+            shape: Shape::Polygon(Polygon::new(&fixed).unwrap()),
+            growth: Fixed::from_f64(-0.1),
+            ..ObstacleSpec::default()
+        };
+        let mut obstacle = Obstacle::new(spec).unwrap();
+        obstacle.carry(Fixed::from_f64(0.1 + 0.15 * f64::from(step % 7) / 6.0));
+        for far in [3.0, 10.0, 31.6, 60.0] {
+            let gamma = obstacle.gamma(&Vector::<f64, 2>::new(-0.95 * far, 0.31 * far).map(Fixed::from_f64));
+            // No corner is farther from the centre than 0.11 m.
+            let least = (far / 0.11 * (far / 0.11)).min(1000.0);
+            assert!(gamma.to_f64() >= 0.9 * least, "{gamma} at {far} m, turned by {turn}");
+        }
+    }
+}

@@ -8,6 +8,9 @@ pub(crate) use pieces::Pieces;
 use super::{Place, Surface};
 use crate::{ObstacleError, RANGE, Scalar, Vector};
 
+/// Scaled coordinates beyond which fixed point looks along their direction.
+const FAR_OFF: f64 = 8.0;
+
 /// Most corners of a polygon.
 pub const MAX_VERTICES: usize = 12;
 /// The share of an edge, at each end, over which the normal turns towards that of the neighbour.
@@ -210,7 +213,14 @@ pub(super) struct InPieces<'a, S> {
 
 impl<S: Scalar, const D: usize> Surface<S, D> for InPieces<'_, S> {
     fn level(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
-        let (u, polygon) = (plane(u), &self.polygon);
+        let (mut u, mut unit, polygon) = (plane(u), S::one(), &self.polygon);
+        // In fixed point products of what is far away leave the range, and what saturates has another direction.
+        if S::EPSILON * S::EPSILON == S::zero() {
+            let largest = u[0].abs().max(u[1].abs());
+            if largest > S::from_f64(FAR_OFF) {
+                (u, unit) = (u.map(|x| x / largest), largest);
+            }
+        }
         let Some((end, edge)) = polygon.leaving(u).and_then(|end| Some((end, polygon.ending(end)?))) else {
             return (S::zero(), Vector::zeros());
         };
@@ -230,6 +240,7 @@ impl<S: Scalar, const D: usize> Surface<S, D> for InPieces<'_, S> {
                 normal = [0, 1].map(|i| normal[i] * own + neighbour.normal[i] * share);
             }
         }
+        let gauge = gauge * unit;
         (gauge * gauge, vector(normal))
     }
 
