@@ -149,31 +149,34 @@ impl<S: Scalar> Guard<S> {
     #[cold]
     #[inline(never)]
     fn between_walls<const D: usize, const CAP: usize>(&self, next: &Next<'_, S, D, CAP>) -> Option<Vector<S, D>> {
-        let Next { x, wanted, speed, dt, skin, .. } = *next;
+        let Next { x, wanted, speed, dt, .. } = *next;
         next.near().find(|o| o.is_round_wall())?;
         let mut others = next.around.near.clone();
         others.retain(|(index, _)| next.table.at(*index).is_some_and(|o| !o.is_round_wall()));
-        let here = View { at: x, step: speed * dt, approach: S::one(), skin, near: &others };
-        let mut seen = HalfSpaces::new(speed);
-        self.look(next, &here, &mut seen);
-        let bare = rounding(x, BARE);
-        let (mut at, mut velocity) = (*x, Vector::zeros());
-        for _ in 0..TANGENTS {
-            let mut within = true;
-            for wall in next.near().filter(|o| o.is_round_wall()) {
-                wall.tangent(&at, |normal, gap| {
-                    within &= gap >= bare;
-                    let offset = (normal.dot(&(at - x)) + skin - gap) / dt;
-                    seen.add(HalfSpace { normal, offset });
-                });
+        // What is narrower than two skins has room for less.
+        [S::one(), S::from_f64(0.125)].into_iter().find_map(|share| {
+            let skin = next.skin * share;
+            let here = View { at: x, step: speed * dt, approach: S::one(), skin, near: &others };
+            let mut seen = HalfSpaces::new(speed);
+            self.look(next, &here, &mut seen);
+            let (mut at, mut velocity) = (*x, Vector::zeros());
+            for _ in 0..TANGENTS {
+                let mut within = true;
+                for wall in next.near().filter(|o| o.is_round_wall()) {
+                    wall.tangent(&at, |normal, gap| {
+                        within &= gap >= rounding(x, BARE);
+                        let offset = (normal.dot(&(at - x)) + skin - gap) / dt;
+                        seen.add(HalfSpace { normal, offset });
+                    });
+                }
+                if within && next.is_clear(&at, rounding(x, BARE), false) {
+                    return Some(velocity);
+                }
+                velocity = seen.allowed(wanted)?;
+                at = x + velocity * dt;
             }
-            if within && next.is_clear(&at, bare, false) {
-                return Some(velocity);
-            }
-            velocity = seen.allowed(wanted)?;
-            at = x + velocity * dt;
-        }
-        None
+            None
+        })
     }
 
     /// The half-spaces that are seen from one place, into `all`.

@@ -68,7 +68,10 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
 
 /// Rounded down, so that what is printed is proved as well.
 pub(super) fn per_second(margin: f64) -> String {
-    format!("{:.3} 1/s", (margin * 1e3).floor() / 1e3)
+    // Rounded down, to no fewer than two digits.
+    let decimals = if margin > 0.0 { (1 - margin.log10().floor() as i32).clamp(3, 12) } else { 3 };
+    let unit = 10f64.powi(decimals);
+    format!("{:.*} 1/s", decimals as usize, (margin * unit).floor() / unit)
 }
 
 fn certificate<S: Scalar>(precision: &'static str, model: &ModelFile) -> Result<Found, ModelFileError> {

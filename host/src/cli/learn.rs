@@ -40,12 +40,12 @@ pub struct Args {
     /// Number of components, 1 to 16 (chosen if not given).
     #[arg(long, value_name = "K", value_parser = components)]
     components: Option<usize>,
-    /// Seed of all random choices.
-    #[arg(long, default_value_t = Options::default().seed, value_parser = number::seed)]
-    seed: u64,
-    /// Guaranteed rate of convergence, 0 to 10 1/s.
-    #[arg(long, default_value_t = Options::default().sigma, value_parser = sigma)]
-    sigma: f64,
+    /// Seed of all random choices (if not given: that of the model that is added to, or else 1).
+    #[arg(long, value_parser = number::seed)]
+    seed: Option<u64>,
+    /// Guaranteed rate of convergence, 0 to 10 1/s (if not given: that of the model that is added to, or else 0.01).
+    #[arg(long, value_parser = sigma)]
+    sigma: Option<f64>,
     /// Weight of being on time on the path against being on it, 0 to 10.
     #[arg(long, default_value_t = Options::default().pace, value_parser = pace)]
     pace: f64,
@@ -102,16 +102,17 @@ fn verdict(learnt: &Learnt, sigma: f64) -> Vec<String> {
     // With a rate far too high it is the numbers that leave.
     if q.excursion > WIDE * extent && !hurried {
         says.push(format!(
-            "from a place beside the demonstrations it leaves their box by {} on the way: look at the figure, and demonstrate from there as well",
+            "from {} it leaves the demonstrations' box by {} on the way: demonstrate from there as well",
+            place(&q.excursion_from[..learnt.model.dimension]),
             percent(q.excursion)
         ));
     }
     let strays = learnt.gives_way > CLOSE * extent || q.path_error > CLOSE * extent;
     if hurried && strays {
         says.push(format!(
-            "--sigma {sigma} asks it to come nearer its goal all the time by a factor of {:.2} in the {longest:.3} s it takes: lower it, --sigma {} asks for \
+            "--sigma {sigma} asks it to come nearer its goal all the time, in the {longest:.3} s it takes by e to the {}: lower it, --sigma {} asks for \
              little",
-            (sigma * longest).exp(),
+            significant(sigma * longest),
             significant(UNHURRIED / longest)
         ));
     } else if learnt.gives_way > CLOSE * extent {
@@ -126,7 +127,7 @@ fn verdict(learnt: &Learnt, sigma: f64) -> Vec<String> {
             says.push("more demonstrations allow more components".into());
         }
     }
-    if (q.pace - 1.0).abs() > OFF_PACE {
+    if (q.pace - 1.0).abs() > OFF_PACE && !hurried {
         let word = if q.pace > 1.0 { "longer" } else { "shorter" };
         says.push(format!(
             "it takes {:.2} times as long as the demonstrator, so {word}: raise --pace to keep time",
@@ -134,6 +135,11 @@ fn verdict(learnt: &Learnt, sigma: f64) -> Vec<String> {
         ));
     }
     says
+}
+
+fn place(x: &[f64]) -> String {
+    let coordinates: Vec<_> = x.iter().map(|x| format!("{x:.4}")).collect();
+    format!("({})", coordinates.join(", "))
 }
 
 /// To two significant digits.
@@ -204,19 +210,22 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         plot::check_format(figure)?;
     }
     output::spare(&out, args.demos.iter().map(PathBuf::as_path))?;
+    let new = read::recordings(&args.demos, args.unit)?;
+    let old = args.add_to.as_ref().map(|path| ModelFile::read(path).map(|model| (path, model))).transpose()?;
+    let learnt_with = old.as_ref().and_then(|(_, model)| model.learnt.as_ref());
+    let usual = Options::default();
     let options = Options {
         name,
         unit: args.unit,
         components: args.components,
-        seed: args.seed,
-        sigma: args.sigma,
+        seed: args.seed.or(learnt_with.and_then(|l| l.seed.map(i64::cast_unsigned))).unwrap_or(usual.seed),
+        sigma: args.sigma.or(learnt_with.and_then(|l| l.sigma)).unwrap_or(usual.sigma),
         pace: args.pace,
-        ..Options::default()
+        ..usual
     };
-    let new = read::recordings(&args.demos, args.unit)?;
-    let (demonstrations, mut sources) = match &args.add_to {
+    let (demonstrations, mut sources) = match &old {
         None => (Demonstrations::new(new)?, vec![]),
-        Some(old) => memory::with(&ModelFile::read(old)?, old, new)?,
+        Some((path, model)) => memory::with(model, path, new)?,
     };
     let complete = args.add_to.is_none() || !sources.is_empty();
     sources.extend(args.demos.iter().map(|path| memory::Source { path: path.clone(), unit: args.unit }));
@@ -244,7 +253,8 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         print_json(&json!({
             "name": learnt.model.name, "model": out, "figure": figure, "dimension": learnt.model.dimension, "k": k, "demonstrations": demonstrations,
             "rmse_m_s": q.rmse, "e_dot": q.e_dot, "dtwd_m": q.dtwd, "path_error_m": q.path_error, "pace": q.pace, "margin": margin, "verdict": verdict(&learnt, options.sigma),
-            "converged": q.converged, "rollouts": q.rollouts, "robust": q.robust, "beside": q.beside, "excursion_m": q.excursion, "certified": true, "seconds": seconds, "warnings": warnings,
+            "converged": q.converged, "rollouts": q.rollouts, "robust": q.robust, "beside": q.beside, "excursion_m": q.excursion,
+            "excursion_from": &q.excursion_from[..learnt.model.dimension], "certified": true, "seconds": seconds, "warnings": warnings,
         }));
     } else {
         say!(

@@ -80,13 +80,21 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     bar.finish_and_clear();
     let board = session.info().board.clone();
     drop(session);
-    let figure = if args.headless { None } else { Some(draw(&scene, &runs)?) };
+    // What was run is told also where it cannot be drawn.
+    let (figure, drawn) = match (!args.headless).then(|| draw(&scene, &runs)) {
+        None => (None, true),
+        Some(Ok(figure)) => (Some(figure), true),
+        Some(Err(error)) => {
+            super::warn(&[format!("no figure: {error}")]);
+            (None, false)
+        }
+    };
     if json {
         print_json(&as_json(&scene, args, &board, &runs, figure.as_deref()));
     } else {
         print_table(&scene, args, &board, &runs, figure.as_deref());
     }
-    Ok(if runs.reached() && runs.untouched() { Outcome::Success } else { Outcome::Failed })
+    Ok(if runs.reached() && runs.untouched() && drawn { Outcome::Success } else { Outcome::Failed })
 }
 
 /// The figure of a run, as SVG and PNG; the path of the PNG.

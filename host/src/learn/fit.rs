@@ -148,13 +148,11 @@ pub fn adapted_basis<const D: usize>(m: &SMatrix<f64, D, D>) -> SMatrix<f64, D, 
 
 /// Lowers the A_k that miss their inequality, so that it holds with half the margin whatever the solver left open.
 pub fn repair<const D: usize>(fit: &mut Stable<D>, sigma: f64) -> Option<()> {
-    let (w, _) = whitening(&fit.p)?;
-    let inverse = w.transpose() * w;
     for a in &mut fit.a {
-        // Subtracting c P^-1 from A lowers A'P + PA by 2c I.
+        // Subtracting c I from A lowers A'P + PA by 2c P, as much in every direction as sigma asks for there: c P^-1 would move it most where P is small.
         let mut step = 0.25 * MARGIN;
         while whitening(&(decrease(&fit.p, a, sigma) - SMatrix::identity() * (0.5 * MARGIN))).is_none() {
-            *a -= inverse * step;
+            *a -= SMatrix::identity() * step;
             step *= 2.0;
             if !step.is_finite() {
                 return None;
@@ -176,4 +174,44 @@ pub fn condition<const D: usize>(p: &SMatrix<f64, D, D>) -> f64 {
         (m * power).norm() / power.norm()
     };
     largest(p) * largest(&(w.transpose() * w))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix2, Vector2};
+
+    /// However lopsided P is, a rate that is asked for in addition moves an A on the edge by little more than that rate.
+    #[test]
+    fn a_little_more_room_moves_a_motion_a_little() {
+        for turn in 0..20 {
+            let angle = f64::from(turn) * 0.3;
+            let axes = Matrix2::new(angle.cos(), -angle.sin(), angle.sin(), angle.cos());
+            let p = axes * Matrix2::from_diagonal(&Vector2::new(1.0, 1.0 / 58.0)) * axes.transpose();
+            let w = Matrix2::new(0.3, 1.0, -1.0, 0.3 + 0.1 * f64::from(turn));
+            // P A + A'P = -w'w, as near to it as one A comes: P^-1 (-w'w/2).
+            let inverse = p.try_inverse().expect("definite");
+            let edge = -inverse * (w.transpose() * w) * 0.5;
+            let mut fit = Stable { p, a: vec![edge], error: 0.0 };
+            repair(&mut fit, 0.0).expect("room");
+            let before = fit.a[0];
+            repair(&mut fit, decrease_rate(&p, &before) + 0.02).expect("room");
+            let moved = (fit.a[0] - before).norm();
+            assert!(moved > 0.0 && moved < 0.1, "{turn}: {moved}");
+        }
+    }
+
+    /// The largest rate that A has, by halving.
+    fn decrease_rate(p: &Matrix2<f64>, a: &Matrix2<f64>) -> f64 {
+        let (mut low, mut high) = (0.0, 100.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if whitening(&decrease(p, a, middle)).is_some() {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
 }

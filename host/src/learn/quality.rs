@@ -44,6 +44,8 @@ pub struct Quality {
     pub beside: usize,
     /// The farthest that one of them, or a rollout from a demonstration's start, leaves the box about the demonstrations and that rollout's start, m.
     pub excursion: f64,
+    /// Where that rollout starts, m; entries beyond the dimension are 0.
+    pub excursion_from: [f64; 3],
 }
 
 /// One demonstration.
@@ -95,7 +97,13 @@ pub fn measure<const D: usize>(motion: &Motion<D>, recordings: &[Recording<D>], 
     let (mut error, mut turn, mut count, mut moving) = (0.0, 0.0, 0usize, 0usize);
     let (mut dtwd, mut path_error, mut pace, mut converged) = (0.0, 0.0, 0.0, 0);
     let area = Area::of(recordings.iter().flat_map(|r| &r.x));
-    let mut excursion = 0.0_f64;
+    let mut farthest = (0.0_f64, SVector::zeros());
+    let mut leaves = |path: &[SVector<f64, D>]| {
+        let by = area.left_by(path);
+        if by > farthest.0 {
+            farthest = (by, path[0]);
+        }
+    };
     for r in recordings {
         for (x, v) in r.x.iter().zip(&r.v).step_by(r.stride()) {
             let f = motion.velocity(x);
@@ -112,7 +120,7 @@ pub fn measure<const D: usize>(motion: &Motion<D>, recordings: &[Recording<D>], 
         let dt = r.step();
         let (rollout, arrived) = rollout(motion, r, extent);
         converged += usize::from(arrived);
-        excursion = excursion.max(area.left_by(&rollout));
+        leaves(&rollout);
         let (sum, mean) = warping_distance(&resample(path), &resample(&rollout));
         dtwd += sum;
         path_error += mean;
@@ -131,7 +139,7 @@ pub fn measure<const D: usize>(motion: &Motion<D>, recordings: &[Recording<D>], 
     for place in &places {
         let (path, in_time) = from_beside(motion, place, longest, extent);
         robust += usize::from(in_time);
-        excursion = excursion.max(area.left_by(&path));
+        leaves(&path);
     }
     Quality {
         rmse: error / count.max(1) as f64,
@@ -143,7 +151,8 @@ pub fn measure<const D: usize>(motion: &Motion<D>, recordings: &[Recording<D>], 
         rollouts: recordings.len(),
         robust,
         beside: places.len(),
-        excursion,
+        excursion: farthest.0,
+        excursion_from: std::array::from_fn(|i| farthest.1.get(i).copied().unwrap_or(0.0)),
     }
 }
 

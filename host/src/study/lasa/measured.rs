@@ -110,6 +110,7 @@ impl HeldOut {
                 robust: all.iter().map(|q| q.robust).sum(),
                 beside: all.iter().map(|q| q.beside).sum(),
                 excursion: all.iter().map(|q| q.excursion).fold(0.0, f64::max),
+                excursion_from: [0.0; 3],
             },
             worst: all.iter().map(|q| q.dtwd).fold(0.0, f64::max),
         })

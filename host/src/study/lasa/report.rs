@@ -115,6 +115,7 @@ fn medians<'a>(all: impl Iterator<Item = &'a Quality> + Clone) -> Option<Quality
         robust: all.clone().map(|q| q.robust).sum(),
         beside: all.clone().map(|q| q.beside).sum(),
         excursion: of(|q| q.excursion)?,
+        excursion_from: [0.0; 3],
     })
 }
 
