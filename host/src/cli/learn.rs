@@ -9,7 +9,9 @@ use serde_json::json;
 use super::check::per_second;
 use super::{Finished, number, print_json, progress, warn};
 use crate::error::{Error, Outcome, counted};
-use crate::learn::{Demonstration, Demonstrations, LearnError, Learnt, Options, Unit, learn_from, memory, read};
+use crate::learn::{
+    Demonstration, Demonstrations, LearnError, Learnt, Options, Unit, Warning, learn_from, memory, read,
+};
 use crate::model::ModelFile;
 use crate::output;
 use crate::plot::{self, Portrait};
@@ -156,15 +158,21 @@ fn arrives(learnt: &Learnt, options: &Options) -> Result<(), Error> {
         0 => String::new(),
         n => format!(", and neither from {}", counted(n, "other")),
     };
-    // A little above, for the start of a recording is left out.
-    let rate = (110.0 * learnt.arriving_rate()).ceil() / 100.0;
+    let wrong = learnt.demonstrations.warnings().iter().find(|w| matches!(w, Warning::Velocity { .. }));
+    let help = if let Some(wrong) = wrong {
+        format!("its velocities may be why: {wrong}")
+    } else {
+        // A little above, for the start of a recording is left out.
+        let rate = (110.0 * learnt.arriving_rate()).ceil() / 100.0;
+        format!(
+            "with --sigma {rate} (now {}) the certificate itself promises that it is; better still, demonstrate a more direct way, in more samples",
+            options.sigma
+        )
+    };
     Err(Error::failed(format!(
         "nothing is written: from the start of {first} the learnt motion is not at its goal after ten times the demonstration's time{others}"
     ))
-    .with_help(format!(
-        "with --sigma {rate} (now {}) the certificate itself promises that it is; better still, demonstrate a more direct way, in more samples",
-        options.sigma
-    )))
+    .with_help(help))
 }
 
 /// A skill as small or as short as this is learnt and certified; one far below is not, for want of digits.

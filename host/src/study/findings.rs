@@ -84,7 +84,7 @@ impl Findings {
         let other = claims(&|v| v.fails() && !v.vital);
         format!(
             "failing: {vital} about cores, bits, or arriving in what the paper shows, which alone decide the exit code ({code}); \
-             {other} about anything else, which do not"
+             {other} about anything else, without effect on it"
         )
     }
 
