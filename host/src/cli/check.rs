@@ -66,9 +66,8 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     Ok(Outcome::Success)
 }
 
-/// Rounded down, so that what is printed is proved as well.
+/// Rounded down, so that what is printed is proved as well; to no fewer than two digits.
 pub(super) fn per_second(margin: f64) -> String {
-    // Rounded down, to no fewer than two digits.
     let decimals = if margin > 0.0 { (1 - margin.log10().floor() as i32).clamp(3, 12) } else { 3 };
     let unit = 10f64.powi(decimals);
     format!("{:.*} 1/s", decimals as usize, (margin * unit).floor() / unit)
