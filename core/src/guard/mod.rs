@@ -44,6 +44,7 @@
 //! and walls in full are in section 7 of `docs/method.md`.
 
 mod program;
+mod search;
 
 use core::cmp::Ordering;
 
@@ -53,7 +54,7 @@ pub use program::{HalfSpace, Solution, nearest};
 use crate::obstacle::Outlook;
 use crate::surroundings::Surroundings;
 use crate::table::Table;
-use crate::{Obstacle, Scalar, Vector};
+use crate::{Obstacle, Scalar, Vector, norm};
 
 /// Most half-spaces of one tick; those that bind the least and find no room are kept by going more slowly.
 const CAPACITY: usize = 192;
@@ -67,9 +68,6 @@ const HOLD: f64 = 0.06;
 
 /// Where the skin cannot be kept, a core itself is kept off by so many units of rounding.
 const BARE: f64 = 4.0;
-
-/// From so many places the walls of a narrow room are looked at.
-const TANGENTS: usize = 16;
 
 /// How the guard lets the robot come near: n.u >= -alpha room/dt. The [module](self) has the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,43 +138,7 @@ impl<S: Scalar> Guard<S> {
         if next.is_clear(x, S::zero(), true) {
             return Solution::found(Vector::zeros(), wanted);
         }
-        let between = if next.table.has_round_walls() { self.between_walls(next) } else { None };
-        between.map_or(best, |velocity| Solution::found(velocity, wanted))
-    }
-
-    /// Where walls leave less room than a step can bend: tangents of their free spaces, each with all of it on one side, are gathered from where one
-    /// velocity after the other leads, until one leads inside.
-    #[cold]
-    #[inline(never)]
-    fn between_walls<const D: usize, const CAP: usize>(&self, next: &Next<'_, S, D, CAP>) -> Option<Vector<S, D>> {
-        let Next { x, wanted, speed, dt, .. } = *next;
-        next.near().find(|o| o.is_round_wall())?;
-        let mut others = next.around.near.clone();
-        others.retain(|(index, _)| next.table.at(*index).is_some_and(|o| !o.is_round_wall()));
-        // What is narrower than two skins has room for less.
-        [S::one(), S::from_f64(0.125)].into_iter().find_map(|share| {
-            let skin = next.skin * share;
-            let here = View { at: x, step: speed * dt, approach: S::one(), skin, near: &others };
-            let mut seen = HalfSpaces::new(speed);
-            self.look(next, &here, &mut seen);
-            let (mut at, mut velocity) = (*x, Vector::zeros());
-            for _ in 0..TANGENTS {
-                let mut within = true;
-                for wall in next.near().filter(|o| o.is_round_wall()) {
-                    wall.tangent(&at, |normal, gap| {
-                        within &= gap >= rounding(x, BARE);
-                        let offset = (normal.dot(&(at - x)) + skin - gap) / dt;
-                        seen.add(HalfSpace { normal, offset });
-                    });
-                }
-                if within && next.is_clear(&at, rounding(x, BARE), false) {
-                    return Some(velocity);
-                }
-                velocity = seen.allowed(wanted)?;
-                at = x + velocity * dt;
-            }
-            None
-        })
+        self.search(next).map_or(best, |velocity| Solution::found(velocity, wanted))
     }
 
     /// The half-spaces that are seen from one place, into `all`.
@@ -246,7 +208,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Next<'_, S, D, CAP> {
     fn is_clear(&self, place: &Vector<S, D>, rounding: S, walls: bool) -> bool {
         let outside = |o: &Obstacle<S, D>| {
             let gamma = o.gamma(place);
-            gamma >= S::one() && (rounding == S::zero() || !o.is_near(gamma, rounding))
+            let room = |gamma: S| gamma - S::one() >= norm(&o.gradient(place)) * (rounding + rounding);
+            gamma >= S::one() && (rounding == S::zero() || !o.is_near(gamma, rounding) || room(gamma))
         };
         let scan = self.table.scan();
         let share = rounding / scan.radius();
@@ -301,6 +264,14 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
     fn nearest(&mut self, wanted: &Vector<S, D>) -> Solution<S, D> {
         let solution = nearest(wanted, &mut self.all, self.speed);
         Solution { feasible: solution.feasible && self.speed >= S::zero(), ..solution }
+    }
+
+    /// The velocity that has most room from all.
+    fn deepest(&mut self) -> Solution<S, D> {
+        for h in &mut self.all {
+            h.offset += self.speed + self.speed;
+        }
+        nearest(&Vector::zeros(), &mut self.all, self.speed)
     }
 
     fn allowed(&mut self, wanted: &Vector<S, D>) -> Option<Vector<S, D>> {

@@ -348,6 +348,19 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.is_within(gamma, gauge - S::one())
     }
 
+    /// Is all of the surface farther than `reach` (m) from a point inside with this Gamma?
+    pub(crate) fn is_deeper(&self, gamma: S, reach: S) -> bool {
+        let one = S::one();
+        let change = reach * self.slimmest;
+        if self.spec.wall {
+            let gauge = one + change;
+            gamma * (gauge * gauge).powi(self.body.power()) < one
+        } else {
+            let gauge = (one - change).max(S::zero());
+            gamma < (gauge * gauge).powi(self.body.power())
+        }
+    }
+
     /// May the gauge be 1 where it differs by `change`, at most, from that of a point with this Gamma?
     #[inline(never)]
     fn is_within(&self, gamma: S, change: S) -> bool {
