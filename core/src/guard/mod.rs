@@ -268,8 +268,9 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
 
     /// The velocity that has most room from all.
     fn deepest(&mut self) -> Solution<S, D> {
+        let more = self.speed * S::from_f64(0.125);
         for h in &mut self.all {
-            h.offset += self.speed + self.speed;
+            h.offset += more;
         }
         nearest(&Vector::zeros(), &mut self.all, self.speed)
     }

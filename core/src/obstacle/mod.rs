@@ -288,6 +288,11 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         });
     }
 
+    /// Is it an ellipsoid with p = 1, and no wall?
+    pub(crate) fn is_plain(&self) -> bool {
+        self.plain
+    }
+
     /// Is it a wall whose free space is convex?
     pub(crate) fn is_round_wall(&self) -> bool {
         self.spec.wall && self.body.pieces().is_none()

@@ -117,8 +117,8 @@ pub struct Table<S: Scalar, const D: usize, const CAP: usize> {
     entries: heapless::Vec<Entry<S, D>, CAP>,
     clusters: Clusters<CAP>,
     scan: Scan<S, D>,
-    /// Is there a wall whose free space is convex?
-    round_walls: bool,
+    /// Are there no obstacles but ellipsoids?
+    only_ellipsoids: bool,
     revision: u32,
 }
 
@@ -135,7 +135,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             entries: heapless::Vec::new(),
             clusters: Clusters::new(),
             scan: Scan::default(),
-            round_walls: false,
+            only_ellipsoids: true,
             revision: 0,
         }
     }
@@ -171,7 +171,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             }
         };
         self.clusters.changed(index, &mut self.entries);
-        self.count_walls();
+        self.sort_out();
         self.revision = self.revision.wrapping_add(1);
         Ok(())
     }
@@ -184,7 +184,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         self.entries.swap_remove(index);
         let last = self.entries.len();
         self.clusters.removed(index, last, &mut self.entries);
-        self.count_walls();
+        self.sort_out();
         self.revision = self.revision.wrapping_add(1);
         true
     }
@@ -201,7 +201,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     pub fn clear(&mut self) {
         self.entries.clear();
         self.clusters = Clusters::new();
-        self.count_walls();
+        self.sort_out();
         self.scan = Scan::default();
         self.revision = self.revision.wrapping_add(1);
     }
@@ -343,13 +343,13 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         (around.velocity, around.unusable) = modulation.finish(of_obstacles, points.as_ref());
     }
 
-    /// Is there a wall whose free space is convex?
-    pub(crate) fn has_round_walls(&self) -> bool {
-        self.round_walls
+    /// Are there no obstacles but ellipsoids?
+    pub(crate) fn has_only_ellipsoids(&self) -> bool {
+        self.only_ellipsoids
     }
 
-    fn count_walls(&mut self) {
-        self.round_walls = self.entries.iter().any(|e| e.obstacle.is_round_wall());
+    fn sort_out(&mut self) {
+        self.only_ellipsoids = self.entries.iter().all(|e| e.obstacle.is_plain());
     }
 
     /// The obstacle at this place in the table.
