@@ -132,10 +132,10 @@ impl<S: Scalar> Guard<S> {
                 return Solution::found(velocity, wanted);
             }
         }
-        if next.is_clear(&(x + best.velocity * dt), bare, true) {
+        if next.is_clear(&(x + best.velocity * dt), bare) {
             return Solution::found(best.velocity, wanted);
         }
-        if next.is_clear(x, S::zero(), true) {
+        if next.is_clear(x, S::zero()) {
             return Solution::found(Vector::zeros(), wanted);
         }
         self.search(next).map_or(best, |velocity| Solution::found(velocity, wanted))
@@ -204,18 +204,25 @@ impl<S: Scalar, const D: usize, const CAP: usize> Next<'_, S, D, CAP> {
         self.around.near.iter().filter_map(|(index, _)| self.table.at(*index))
     }
 
-    /// Is a place outside of every core, farther than `rounding`, m? Without `walls`, those whose free space is convex do not count.
-    fn is_clear(&self, place: &Vector<S, D>, rounding: S, walls: bool) -> bool {
-        let outside = |o: &Obstacle<S, D>| {
-            let gamma = o.gamma(place);
-            let room = |gamma: S| gamma - S::one() >= norm(&o.gradient(place)) * (rounding + rounding);
-            gamma >= S::one() && (rounding == S::zero() || !o.is_near(gamma, rounding) || room(gamma))
-        };
+    /// Is a place outside of every core, farther than `rounding`, m?
+    fn is_clear(&self, place: &Vector<S, D>, rounding: S) -> bool {
         let scan = self.table.scan();
         let share = rounding / scan.radius();
-        self.near().filter(|o| walls || !o.is_round_wall()).all(outside)
+        let outside = |o: &Obstacle<S, D>| {
+            let gamma = o.gamma(place);
+            gamma >= S::one()
+                && (rounding == S::zero() || !o.is_near(gamma, rounding) || is_farther(o, place, gamma, rounding))
+        };
+        self.near().all(outside)
             && !(scan.gamma(place) < (S::one() + share) * (S::one() + share))
     }
+}
+
+/// Is a surface farther than this, m, at its slope here, and if it becomes twice as steep?
+#[cold]
+#[inline(never)]
+fn is_farther<S: Scalar, const D: usize>(o: &Obstacle<S, D>, place: &Vector<S, D>, gamma: S, distance: S) -> bool {
+    gamma - S::one() >= norm(&o.gradient(place)) * (distance + distance)
 }
 
 /// From where surfaces are looked at.

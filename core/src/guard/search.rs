@@ -57,8 +57,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Search<'_, S, D, CAP> {
         let bare = rounding(x, BARE);
         for _ in 0..steps {
             let mut seen = self.look(&at);
-            if self.next.is_clear(&at, bare, true) {
-                let near = seen.allowed(wanted).filter(|u| self.next.is_clear(&(x + u * dt), bare, true));
+            if self.next.is_clear(&at, bare) {
+                let near = seen.allowed(wanted).filter(|u| self.next.is_clear(&(x + u * dt), bare));
                 return Some(near.unwrap_or((at - x) / dt));
             }
             let from = at;
@@ -67,7 +67,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Search<'_, S, D, CAP> {
                 return None;
             }
         }
-        self.next.is_clear(&at, bare, true).then(|| (at - x) / dt)
+        self.next.is_clear(&at, bare).then(|| (at - x) / dt)
     }
 
     fn look(&mut self, at: &Vector<S, D>) -> HalfSpaces<S, D> {
