@@ -121,21 +121,23 @@ impl<S: Scalar> Guard<S> {
         let Next { x, wanted, speed, dt, .. } = *next;
         // The skin is no core: outside of that, by what rounding may do and as much again, is all that has to be.
         let (bare, skin) = (rounding(x, BARE), rounding(x, BARE + BARE));
-        // A surface that cannot be kept away from in time alone cannot be kept away from along with others.
-        if !(fastest - (next.skin - skin) / dt > speed) {
+        let landing = x + best.velocity * dt;
+        // A surface that cannot be kept away from in time alone cannot be kept away from along with others; x is behind it.
+        let behind = fastest - (next.skin - skin) / dt > speed;
+        if !behind {
             // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
-            let (at, step) = (x + best.velocity * dt, speed * dt);
-            let there = View { at: &at, step: step + step, approach: S::one(), skin, near: &next.around.near };
+            let step = speed * dt;
+            let there = View { at: &landing, step: step + step, approach: S::one(), skin, near: &next.around.near };
             let mut seen = HalfSpaces::new(speed);
             self.look(next, &there, &mut seen);
             if let Some(velocity) = seen.allowed(wanted) {
                 return Solution::found(velocity, wanted);
             }
         }
-        if next.is_clear(&(x + best.velocity * dt), bare) {
+        if next.is_clear(&landing, bare) {
             return Solution::found(best.velocity, wanted);
         }
-        if next.is_clear(x, S::zero()) {
+        if !(behind && next.table.has_only_ellipsoids()) && next.is_clear(x, S::zero()) {
             return Solution::found(Vector::zeros(), wanted);
         }
         self.search(next).map_or(best, |velocity| Solution::found(velocity, wanted))
