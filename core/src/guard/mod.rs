@@ -14,9 +14,9 @@
 //! sample, so no velocity of the obstacle and no second order of its turning enters. Of all u that fulfil every
 //! inequality and |u| <= speed the one nearest to what was wanted is driven. One half-space a core is enough to be
 //! outside and more than is needed: where none fulfils them all, those that hold the cores as seen from where the
-//! least violation leads are tried, without alpha and, but for rounding, without the skin; and in a room that is
-//! narrower than a step can bend, tangents of its wall from several places. Where that fails too, the velocity that
-//! violates the worst inequality least is driven, and the status says so.
+//! least violation leads are tried, without alpha and, but for rounding, without the skin; then a few other places
+//! of the next sample, walls by their tangents. Where that fails too, the velocity that violates the worst inequality
+//! least is driven, and the status says so.
 //!
 //! What is exact: superellipsoids, boxes, cylinders, capsules, points of a scan, and polygons, by their convex
 //! pieces. A wall's free space is convex but for polygons; a half-space would let a step end outside of its curve, so
@@ -215,8 +215,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Next<'_, S, D, CAP> {
             gamma >= S::one()
                 && (rounding == S::zero() || !o.is_near(gamma, rounding) || is_farther(o, place, gamma, rounding))
         };
-        self.near().all(outside)
-            && !(scan.gamma(place) < (S::one() + share) * (S::one() + share))
+        self.near().all(outside) && !(scan.gamma(place) < (S::one() + share) * (S::one() + share))
     }
 }
 
@@ -273,15 +272,6 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
     fn nearest(&mut self, wanted: &Vector<S, D>) -> Solution<S, D> {
         let solution = nearest(wanted, &mut self.all, self.speed);
         Solution { feasible: solution.feasible && self.speed >= S::zero(), ..solution }
-    }
-
-    /// The velocity that has most room from all.
-    fn deepest(&mut self) -> Solution<S, D> {
-        let more = self.speed * S::from_f64(0.125);
-        for h in &mut self.all {
-            h.offset += more;
-        }
-        nearest(&Vector::zeros(), &mut self.all, self.speed)
     }
 
     fn allowed(&mut self, wanted: &Vector<S, D>) -> Option<Vector<S, D>> {

@@ -1,42 +1,63 @@
-//! Where neither what was seen from x nor from where the least violation leads can be fulfilled: one place of the next sample after the other is tried.
+//! Where neither what is seen from x nor what is seen from where the least violation leads can be fulfilled: other places of the next sample.
+//!
+//! What is seen from a place y leads on to the next, and that is the one with most room: with s the half-spaces' offsets as seen from y,
+//! of all |u| <= speed first that nearest to zero with n_i.u >= s_i + speed/8, or else that with the largest least n_i.u - s_i. Round walls, whose
+//! free space is convex, ask for tangents here,
+//!
+//! ```text
+//! n.delta >= -gap,   n inwards along the gradient of the gauge lambda at y,   gap = (1 - lambda(y))/|grad lambda(y)| - n.(y - x)
+//! ```
+//!
+//! which leave out none of it, wherever y is, so those of all places are kept. A place is taken if it is outside of every core, whatever half-spaces
+//! say; once it is, the velocity nearest to the wanted one among what is seen from there, if that leads outside too.
+//!
+//! From x it goes three places on (eight where round walls are near: one after the other comes nearer to their curve), and then one from each end of
+//! the step along each axis, with four or six in all. So it is bounded, and what is narrow can be missed.
 
 use super::{BARE, Guard, HalfSpace, HalfSpaces, Next, View, rounding};
-use crate::{Scalar, Vector};
+use crate::{Obstacle, Scalar, Vector};
 
-/// From x so many steps are taken, and from every other place.
-const LONG: usize = 8;
-const SHORT: usize = 3;
+/// Places one after the other from x; and near round walls.
+const PLACES: usize = 3;
+const PLACES_IN_WALLS: usize = 8;
 /// Room for so many tangents of walls.
 const TANGENTS: usize = 48;
 
 impl<S: Scalar> Guard<S> {
+    /// A velocity whose next sample is outside of every core. Not looked for where there are only ellipsoids: those let the first two looks miss next
+    /// to nothing, and it takes longer than all the rest of their tick.
     #[cold]
     #[inline(never)]
-    pub(super) fn search<const D: usize, const CAP: usize>(
-        &self,
-        next: &Next<'_, S, D, CAP>,
-    ) -> Option<Vector<S, D>> {
-        let Next { x, speed, dt, .. } = *next;
-        let step = speed * dt;
-        if next.table.has_only_ellipsoids() {
+    pub(super) fn search<const D: usize, const CAP: usize>(&self, next: &Next<'_, S, D, CAP>) -> Option<Vector<S, D>> {
+        let Next { x, speed, dt, table, .. } = *next;
+        if table.has_only_ellipsoids() {
             return None;
         }
-        let mut near = heapless::Vec::<_, CAP>::new();
-        let mut walls = false;
+        let mut search = Search {
+            guard: self,
+            next,
+            others: heapless::Vec::new(),
+            walls: heapless::Vec::new(),
+            tangents: heapless::Vec::new(),
+        };
         for (index, reach) in &next.around.near {
-            let Some(o) = next.table.at(*index) else { continue };
-            let gamma = o.gamma(x);
-            if o.is_deeper(gamma, step) {
+            let Some(obstacle) = table.at(*index) else { continue };
+            let gamma = obstacle.gamma(x);
+            if obstacle.is_deeper(gamma, speed * dt) {
                 return None;
             }
-            if o.is_near(gamma, step + next.skin) {
-                walls |= o.is_round_wall();
-                let _ = near.push((*index, *reach));
+            // Neither can be full: they have the table's own capacity.
+            if obstacle.is_round_wall() {
+                let _ = search.walls.push(obstacle);
+            } else if obstacle.is_near(gamma, speed * dt + next.skin) {
+                let _ = search.others.push((*index, *reach));
             }
         }
-        let mut search = Search { guard: self, next, near: &near, tangents: heapless::Vec::new() };
-        search.beginning(*x, if walls { LONG } else { SHORT }).or_else(|| {
-            directions::<S, D>().find_map(|way| search.beginning(x + way * step, 1))
+        let places = if search.walls.is_empty() { PLACES } else { PLACES_IN_WALLS };
+        search.from(Vector::zeros(), places).or_else(|| {
+            let ends = (0..D).flat_map(|i| [speed, -speed].map(|speed| (i, speed)));
+            ends.into_iter()
+                .find_map(|(i, speed)| search.from(Vector::from_fn(|j, _| if i == j { speed } else { S::zero() }), 1))
         })
     }
 }
@@ -44,45 +65,49 @@ impl<S: Scalar> Guard<S> {
 struct Search<'a, S: Scalar, const D: usize, const CAP: usize> {
     guard: &'a Guard<S>,
     next: &'a Next<'a, S, D, CAP>,
-    /// What a step may reach.
-    near: &'a [(usize, S)],
-    /// Of those walls, each with all of the free space on one side.
+    /// Walls whose free space is convex.
+    walls: heapless::Vec<&'a Obstacle<S, D>, CAP>,
+    /// What else a step may reach: places in the table, with how far to look.
+    others: heapless::Vec<(usize, S), CAP>,
+    /// Of those walls from all places so far; each has all of the free space on one side.
     tangents: heapless::Vec<HalfSpace<S, D>, TANGENTS>,
 }
 
 impl<S: Scalar, const D: usize, const CAP: usize> Search<'_, S, D, CAP> {
-    /// From one place: what is seen from there leads to the next.
-    fn beginning(&mut self, mut at: Vector<S, D>, steps: usize) -> Option<Vector<S, D>> {
-        let Next { x, dt, wanted, .. } = *self.next;
-        let bare = rounding(x, BARE);
-        for _ in 0..steps {
-            let mut seen = self.look(&at);
-            if self.next.is_clear(&at, bare) {
-                let near = seen.allowed(wanted).filter(|u| self.next.is_clear(&(x + u * dt), bare));
-                return Some(near.unwrap_or((at - x) / dt));
+    /// From where this velocity leads so many places on.
+    fn from(&mut self, mut velocity: Vector<S, D>, places: usize) -> Option<Vector<S, D>> {
+        for _ in 0..places {
+            let mut seen = self.look(&velocity);
+            if self.leads_outside(&velocity) {
+                let nearest = seen.allowed(self.next.wanted).filter(|u| self.leads_outside(u));
+                return Some(nearest.unwrap_or(velocity));
             }
-            let from = at;
-            at = x + seen.deepest().velocity * dt;
-            if at == from {
+            let last = velocity;
+            velocity = seen.roomiest();
+            if velocity == last {
                 return None;
             }
         }
-        self.next.is_clear(&at, bare).then(|| (at - x) / dt)
+        self.leads_outside(&velocity).then_some(velocity)
     }
 
-    fn look(&mut self, at: &Vector<S, D>) -> HalfSpaces<S, D> {
-        let Next { x, speed, dt, table, .. } = *self.next;
-        let mut others = heapless::Vec::<_, CAP>::new();
-        others.extend(self.near.iter().filter(|(index, _)| table.at(*index).is_some_and(|o| !o.is_round_wall())).copied());
+    fn leads_outside(&self, velocity: &Vector<S, D>) -> bool {
+        let Next { x, dt, .. } = *self.next;
+        self.next.is_clear(&(x + velocity * dt), rounding(x, BARE))
+    }
+
+    /// The half-spaces seen from where a velocity leads, and tangents of walls from there and before.
+    fn look(&mut self, velocity: &Vector<S, D>) -> HalfSpaces<S, D> {
+        let Next { x, speed, dt, .. } = *self.next;
+        let at = x + velocity * dt;
+        let (step, skin) = (speed * dt, rounding(x, BARE + BARE));
         let mut seen = HalfSpaces::new(speed);
-        let step = speed * dt;
-        let skin = rounding(x, BARE + BARE);
-        let there = View { at, step: step + step, approach: S::one(), skin, near: &others };
+        let there = View { at: &at, step: step + step, approach: S::one(), skin, near: &self.others };
         self.guard.look(self.next, &there, &mut seen);
-        for wall in self.near.iter().filter_map(|(index, _)| table.at(*index)).filter(|o| o.is_round_wall()) {
-            wall.tangent(at, |normal, gap| {
-                let offset = (normal.dot(&(at - x)) + skin - gap) / dt;
-                let _ = self.tangents.push(HalfSpace { normal, offset });
+        for wall in &self.walls {
+            wall.tangent(&at, |normal, gap| {
+                // Where there is no more room, those before have to do.
+                let _ = self.tangents.push(HalfSpace { normal, offset: normal.dot(velocity) + (skin - gap) / dt });
             });
         }
         self.tangents.iter().for_each(|tangent| seen.add(*tangent));
@@ -90,10 +115,11 @@ impl<S: Scalar, const D: usize, const CAP: usize> Search<'_, S, D, CAP> {
     }
 }
 
-/// Unit vectors both ways along each axis.
-fn directions<S: Scalar, const D: usize>() -> impl Iterator<Item = Vector<S, D>> {
-    (0..2 * D).map(|n| {
-        let along = if n % 2 == 0 { S::one() } else { -S::one() };
-        Vector::from_fn(|i, _| if i == n / 2 { along } else { S::zero() })
-    })
+impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
+    /// A velocity that keeps off all half-spaces by an eighth of the speed, or else by as much as can be had.
+    fn roomiest(&mut self) -> Vector<S, D> {
+        let room = self.speed * S::from_f64(0.125);
+        self.all.iter_mut().for_each(|h| h.offset += room);
+        self.nearest(&Vector::zeros()).velocity
+    }
 }
