@@ -54,7 +54,7 @@ pub use program::{HalfSpace, Solution, nearest};
 use crate::obstacle::Outlook;
 use crate::surroundings::Surroundings;
 use crate::table::Table;
-use crate::{Obstacle, Scalar, Vector, norm};
+use crate::{Obstacle, Scalar, Vector};
 
 /// Most half-spaces of one tick; those that bind the least and find no room are kept by going more slowly.
 const CAPACITY: usize = 192;
@@ -122,9 +122,8 @@ impl<S: Scalar> Guard<S> {
         // The skin is no core: outside of that, by what rounding may do and as much again, is all that has to be.
         let (bare, skin) = (rounding(x, BARE), rounding(x, BARE + BARE));
         let landing = x + best.velocity * dt;
-        // A surface that cannot be kept away from in time alone cannot be kept away from along with others; x is behind it.
-        let behind = fastest - (next.skin - skin) / dt > speed;
-        if !behind {
+        // A surface that cannot be kept away from in time alone cannot be kept away from along with others.
+        if !(fastest - (next.skin - skin) / dt > speed) {
             // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
             let step = speed * dt;
             let there = View { at: &landing, step: step + step, approach: S::one(), skin, near: &next.around.near };
@@ -137,7 +136,7 @@ impl<S: Scalar> Guard<S> {
         if next.is_clear(&landing, bare) {
             return Solution::found(best.velocity, wanted);
         }
-        if !(behind && next.table.has_only_ellipsoids()) && next.is_clear(x, S::zero()) {
+        if next.is_clear(x, S::zero()) {
             return Solution::found(Vector::zeros(), wanted);
         }
         self.search(next).map_or(best, |velocity| Solution::found(velocity, wanted))
@@ -213,17 +212,17 @@ impl<S: Scalar, const D: usize, const CAP: usize> Next<'_, S, D, CAP> {
         let outside = |o: &Obstacle<S, D>| {
             let gamma = o.gamma(place);
             gamma >= S::one()
-                && (rounding == S::zero() || !o.is_near(gamma, rounding) || is_farther(o, place, gamma, rounding))
+                && (rounding == S::zero() || !o.is_near(gamma, rounding) || is_farther(o, place, rounding))
         };
         self.near().all(outside) && !(scan.gamma(place) < (S::one() + share) * (S::one() + share))
     }
 }
 
-/// Is a surface farther than this, m, at its slope here, and if it becomes twice as steep?
+/// Is the surface farther than this, m, also where it comes near twice as fast as here?
 #[cold]
 #[inline(never)]
-fn is_farther<S: Scalar, const D: usize>(o: &Obstacle<S, D>, place: &Vector<S, D>, gamma: S, distance: S) -> bool {
-    gamma - S::one() >= norm(&o.gradient(place)) * (distance + distance)
+fn is_farther<S: Scalar, const D: usize>(o: &Obstacle<S, D>, place: &Vector<S, D>, distance: S) -> bool {
+    o.tangent(place).is_some_and(|(_, gap)| gap >= distance + distance)
 }
 
 /// From where surfaces are looked at.

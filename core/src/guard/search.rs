@@ -105,10 +105,10 @@ impl<S: Scalar, const D: usize, const CAP: usize> Search<'_, S, D, CAP> {
         let there = View { at: &at, step: step + step, approach: S::one(), skin, near: &self.others };
         self.guard.look(self.next, &there, &mut seen);
         for wall in &self.walls {
-            wall.tangent(&at, |normal, gap| {
+            if let Some((normal, gap)) = wall.tangent(&at) {
                 // Where there is no more room, those before have to do.
                 let _ = self.tangents.push(HalfSpace { normal, offset: normal.dot(velocity) + (skin - gap) / dt });
-            });
+            }
         }
         self.tangents.iter().for_each(|tangent| seen.add(*tangent));
         seen

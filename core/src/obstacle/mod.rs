@@ -298,9 +298,10 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.spec.wall && self.body.pieces().is_none()
     }
 
-    /// Calls `keep(n, gap)` for the half-space n.delta >= -gap of displacements from x that has all of such a wall's free space inside: of the tangent
-    /// to the gauge, lambda + grad lambda.delta <= 1. None at the centre.
-    pub(crate) fn tangent(&self, x: &Vector<S, D>, keep: impl FnOnce(Vector<S, D>, S)) {
+    /// The tangent to the gauge at x, as a half-space n.delta >= -gap of displacements from x (n of unit length, world's frame, to where the robot may
+    /// be; gap in m): that in which lambda(x) + grad lambda(x).delta is at least 1, or at most 1 in a wall. That of a wall whose free space is convex
+    /// has all of it inside. None at the centre.
+    pub(crate) fn tangent(&self, x: &Vector<S, D>) -> Option<(Vector<S, D>, S)> {
         let u = self.scaled(x);
         let (gamma, direction) = self.body.level(&self.spec.shape, &u);
         let gauge = root(gamma, self.body.power());
@@ -309,11 +310,12 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let steepest = self.steepest();
         let outward = (direction / length).zip_map(&self.hard, |n, hard| n * (hard / steepest));
         let slope = norm(&outward);
-        if gauge > S::zero() && length > S::zero() && slope > S::zero() {
+        (gauge > S::zero() && length > S::zero() && slope > S::zero()).then(|| {
+            let way = if self.spec.wall { -S::one() } else { S::one() };
             // grad lambda . u = lambda
-            let gap = (direction / length).dot(&u) * (S::one() / gauge - S::one()) / steepest / slope;
-            keep(times(&self.spec.rotation, &(outward / -slope)), gap - self.blur);
-        }
+            let gap = (direction / length).dot(&u) * (S::one() - S::one() / gauge) / steepest / slope;
+            (times(&self.spec.rotation, &(outward * (way / slope))), gap * way - self.blur)
+        })
     }
 
     /// The same for an ellipsoid with p = 1: the half-space where the ray from the centre leaves the surface, as for
