@@ -211,18 +211,10 @@ impl<S: Scalar, const D: usize, const CAP: usize> Next<'_, S, D, CAP> {
         let share = rounding / scan.radius();
         let outside = |o: &Obstacle<S, D>| {
             let gamma = o.gamma(place);
-            gamma >= S::one()
-                && (rounding == S::zero() || !o.is_near(gamma, rounding) || is_farther(o, place, rounding))
+            gamma >= S::one() && (rounding == S::zero() || !o.is_near(gamma, rounding) || o.is_farther(place, rounding))
         };
         self.near().all(outside) && !(scan.gamma(place) < (S::one() + share) * (S::one() + share))
     }
-}
-
-/// Is the surface farther than this, m, also where it comes near twice as fast as here?
-#[cold]
-#[inline(never)]
-fn is_farther<S: Scalar, const D: usize>(o: &Obstacle<S, D>, place: &Vector<S, D>, distance: S) -> bool {
-    o.tangent(place).is_some_and(|(_, gap)| gap >= distance + distance)
 }
 
 /// From where surfaces are looked at.
