@@ -6,7 +6,7 @@ mod world;
 
 use pliant_core::scalar::Fixed;
 use pliant_core::{RobotState, Scalar, Status};
-use world::judge::Asked;
+use world::judge::{Asked, clear_velocity};
 use world::{Kind, World, gamma, is_long, room, share, world};
 
 /// Ticks of one world.
@@ -87,6 +87,14 @@ fn campaign<S: Scalar, const D: usize>(place: Place, seed: u64) {
                     !(infeasible && asked.may_stand),
                     "seed {seed} tick {n}: infeasible, and standing still is not"
                 );
+                if infeasible {
+                    let found = clear_velocity(&controller, &state, tick);
+                    assert!(
+                        found.is_none(),
+                        "seed {seed} tick {n}: {found:?} leads outside from {:?}, {command:?}",
+                        state.position()
+                    );
+                }
                 if infeasible && !asked.more {
                     tally.judged += 1;
                     let found = asked.search();

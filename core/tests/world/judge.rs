@@ -145,6 +145,49 @@ impl<S: Scalar, const D: usize> Asked<S, D> {
     }
 }
 
+/// A velocity within the limit whose next sample is outside of every core there will be, by more than rounding, if one is among 432 (in space 600): whatever
+/// half-spaces say, `INFEASIBLE` was wrong then.
+pub fn clear_velocity<S: Scalar, const D: usize, const CAP: usize>(
+    controller: &Controller<S, D, CAP>,
+    state: &RobotState<S, D>,
+    dt: f64,
+) -> Option<Vector<f64, D>> {
+    let x = numbers(state.position());
+    let speed = controller.settings().limits.speed.to_f64() * (1.0 - 1e-6);
+    // What is large has coarse coordinates.
+    let near = |o: &&Obstacle<S, D>| o.gamma(state.position()) < S::from_f64(4.0);
+    let extent = |o: &Obstacle<S, D>| numbers(&o.spec().shape.extent()).amax();
+    let largest = controller.table().iter().map(|e| e.obstacle()).filter(near).map(extent).fold(1.0, f64::max);
+    let rounding = 16.0 * S::EPSILON.to_f64() * x.amax().max(largest);
+    let outside = |y: Vector<f64, D>| gamma(controller, &y.map(S::from_f64)) >= S::one();
+    let around = |y: &Vector<f64, D>| {
+        (0..D).all(|i| {
+            [rounding, -rounding].iter().all(|off| outside(y + Vector::from_fn(|j, _| if i == j { *off } else { 0.0 })))
+        })
+    };
+    let (shells, ways) = if D == 2 { (12, 36) } else { (6, 100) };
+    let velocities =
+        (1..=shells).rev().flat_map(|shell| (0..ways).map(move |way| (f64::from(shell) / f64::from(shells), way)));
+    let mut velocities = velocities.map(|(share, way)| direction::<D>(way, ways) * (speed * share));
+    velocities.find(|u| {
+        let y = x + u * dt;
+        outside(y) && around(&y)
+    })
+}
+
+/// One of so many unit vectors evenly about: on a circle, or on a spiral from pole to pole.
+fn direction<const D: usize>(way: u32, ways: u32) -> Vector<f64, D> {
+    let share = (f64::from(way) + 0.5) / f64::from(ways);
+    if D == 2 {
+        let (sin, cos) = (std::f64::consts::TAU * share).sin_cos();
+        return Vector::from_fn(|i, _| [cos, sin][i]);
+    }
+    let height = 1.0 - 2.0 * share;
+    let (sin, cos) = (2.399_963 * f64::from(way)).sin_cos();
+    let across = (1.0 - height * height).sqrt();
+    Vector::from_fn(|i, _| [across * cos, across * sin, height][i])
+}
+
 /// p: Gamma is the gauge to the power of 2p.
 fn power<S: Scalar, const D: usize>(o: &Obstacle<S, D>) -> f64 {
     if let Shape::Ellipsoid { curvature, .. } = o.spec().shape { f64::from(curvature) } else { 1.0 }
