@@ -276,22 +276,20 @@ fn skin<S: Scalar, const D: usize>(x: &Vector<S, D>) -> S {
     rounding(x, 16.0).max(S::from_f64(SKIN))
 }
 
-/// So many units of rounding of a position like this one, m. In fixed point (where the square of epsilon is zero) all
-/// are equally coarse.
+/// So many units of rounding of a position like this one, m. In fixed point all are equally coarse.
 fn rounding<S: Scalar, const D: usize>(x: &Vector<S, D>, units: f64) -> S {
     let one = S::one();
-    let size = if S::EPSILON * S::EPSILON > S::zero() { x.iter().fold(one, |m, x| m.max(x.abs())) } else { one };
+    let size = if S::FLOATS { x.iter().fold(one, |m, x| m.max(x.abs())) } else { one };
     S::EPSILON * S::from_f64(units) * size
 }
 
 /// By how much the surface of a body of this size, m, counts as nearer, m: what rounding may do to the distance from
-/// it, as far as that is beyond [`SKIN`]. Scaled coordinates are in units of that size; in fixed point (where the
-/// square of epsilon is zero) the unit's reciprocal is as coarse as all other numbers, and what it is wrong by is so
-/// many times a metre squared.
+/// it, as far as that is beyond [`SKIN`]. Scaled coordinates are in units of that size; in fixed point the unit's
+/// reciprocal is as coarse as all other numbers, and what it is wrong by is so many times a metre squared.
 pub(crate) fn blur<S: Scalar>(size: S) -> S {
     let eight = S::EPSILON * S::from_f64(8.0) * size;
     let two = S::one() + S::one();
-    let all = if S::EPSILON * S::EPSILON > S::zero() { eight * two } else { eight * size.max(two) };
+    let all = if S::FLOATS { eight * two } else { eight * size.max(two) };
     (all - S::from_f64(SKIN)).max(S::zero())
 }
 

@@ -153,11 +153,11 @@ fn within_ball<S: Scalar, const D: usize>(wanted: &Vector<S, D>, speed: S) -> (V
     if norm(&goal) <= limit { (goal, goal) } else { (goal, goal * (speed / norm(&goal))) }
 }
 
-/// What rounding may do to a scalar product with a unit vector, for velocities of this size. Where the square of epsilon is
-/// zero, numbers have a fixed point, and the error does not shrink with the numbers.
+/// What rounding may do to a scalar product with a unit vector, for velocities of this size. In fixed point the error does not
+/// shrink with the numbers.
 fn rounding<S: Scalar>(size: S) -> S {
     let relative = S::EPSILON * S::from_f64(16.0);
-    if S::EPSILON * S::EPSILON > S::zero() { relative * size } else { relative }
+    if S::FLOATS { relative * size } else { relative }
 }
 
 /// The half-spaces that have a side, moved to the front.

@@ -51,7 +51,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let t = u / largest;
         let size = norm(&t);
         // In fixed point a short axis' reciprocal has no square.
-        let (normal, unit) = if S::EPSILON * S::EPSILON > S::zero() {
+        let (normal, unit) = if S::FLOATS {
             (t.component_mul(&self.hard), one)
         } else {
             let shortest = one / self.slimmest;

@@ -148,6 +148,7 @@ impl One for Fixed {
 impl Scalar for Fixed {
     type Lanes = Each<Self, LANES>;
     const EPSILON: Self = Self(I12F20::DELTA);
+    const FLOATS: bool = false;
     const MAX: Self = Self(I12F20::MAX);
     const FAR: Self = Self::from_bits(1000 << DIGITS);
     /// 2 mm.

@@ -102,6 +102,7 @@ macro_rules! scalar {
         impl Scalar for $float {
             type Lanes = $lanes;
             const EPSILON: Self = <$float>::EPSILON;
+            const FLOATS: bool = true;
             const MAX: Self = <$float>::MAX;
             const FAR: Self = 1e15;
             const MIN_AXIS: Self = 1e-4;

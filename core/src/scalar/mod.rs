@@ -48,6 +48,8 @@ pub trait Scalar:
     type Lanes: Lanes<Self, LANES>;
     /// Distance from one to the next larger number: the unit of rounding at 1, and everywhere in fixed point.
     const EPSILON: Self;
+    /// Has it a floating point? Then the unit of rounding is as small as the number, and otherwise [`EPSILON`](Self::EPSILON) throughout.
+    const FLOATS: bool;
     /// Largest finite number.
     const MAX: Self;
     /// An obstacle with this Gamma or a larger one is too far to matter: in floating point, 1e15, it would not change

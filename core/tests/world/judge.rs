@@ -79,8 +79,7 @@ impl<S: Scalar, const D: usize> Asked<S, D> {
                     let share = (0.5 * sharpest(&corners, &numbers(&o.spec().center))).sin();
                     let inside = o.gamma(state.position()) <= S::one();
                     let size = corners.iter().map(|c| (c - numbers(&o.spec().center)).norm()).fold(0.0, f64::max);
-                    // In fixed point epsilon has no square.
-                    let unit = if S::EPSILON * S::EPSILON > S::zero() { 2.0 } else { size.max(2.0) };
+                    let unit = if S::FLOATS { 2.0 } else { size.max(2.0) };
                     let skin = skin + (8.0 * eps * size * unit - 1.0 / 65536.0).max(0.0);
                     undisturbed &= !inside && share * d > 2.0 * step + skin + rounding.distance;
                     more |= inside || share * d - 2.0 * step - skin < step;

@@ -215,7 +215,7 @@ impl<S: Scalar, const D: usize> Surface<S, D> for InPieces<'_, S> {
     fn level(&self, u: &Vector<S, D>) -> (S, Vector<S, D>) {
         let (mut u, mut unit, polygon) = (plane(u), S::one(), &self.polygon);
         // In fixed point products of what is far away leave the range, and what saturates has another direction.
-        if S::EPSILON * S::EPSILON == S::zero() {
+        if !S::FLOATS {
             let largest = u[0].abs().max(u[1].abs());
             if largest > S::from_f64(FAR_OFF) {
                 (u, unit) = (u.map(|x| x / largest), largest);
