@@ -11,14 +11,14 @@
 //! which leave out none of it, wherever y is, so those of all places are kept. A place is taken if it is outside of every core, whatever half-spaces
 //! say; once it is, the velocity nearest to the wanted one among what is seen from there, if that leads outside too.
 //!
-//! From x it goes three places on (eight where round walls are near: one after the other comes nearer to their curve), and then one from each end of
+//! From x it goes two places on (eight where round walls are near: one after the other comes nearer to their curve), and then one from each end of
 //! the step along each axis, with four or six in all. So it is bounded, and what is narrow can be missed.
 
 use super::{BARE, Guard, HalfSpace, HalfSpaces, Next, View, rounding};
 use crate::{Obstacle, Scalar, Vector};
 
 /// Places one after the other from x; and near round walls.
-const PLACES: usize = 3;
+const PLACES: usize = 2;
 const PLACES_IN_WALLS: usize = 8;
 /// Room for so many tangents of walls.
 const TANGENTS: usize = 48;

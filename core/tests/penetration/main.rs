@@ -50,64 +50,66 @@ struct Tally {
     judged: u64,
 }
 
+/// One world, from tick to tick.
+fn drive<S: Scalar, const D: usize>(place: Place, seed: u64, tally: &mut Tally) {
+    let (dt, tick) = (S::from_f64(0.001), 0.001);
+    let Some(World { mut controller, start: mut x }) = place.world::<S, D>(seed) else { return };
+    let speed = controller.settings().limits.speed.to_f64();
+    let mut afterwards = 0;
+    for n in 0..TICKS {
+        let Some(state) = RobotState::new(x.map(S::from_f64)) else { break };
+        let before = gamma(&controller, state.position());
+        let command = controller.tick(&state, dt);
+        let u = command.velocity.map(|v| v.to_f64());
+        assert!(u.norm() <= speed * (1.0 + 1e-5) + 1e-5, "seed {seed} tick {n}: {u} over {speed}");
+        x += u * tick;
+        tally.ticks += 1;
+        tally.guarded += u64::from(command.status.contains(Status::GUARDED));
+        let infeasible = command.status.contains(Status::INFEASIBLE);
+        tally.infeasible += u64::from(infeasible);
+        afterwards += u64::from(infeasible || afterwards > 0);
+        let after = gamma(&controller, &x.map(S::from_f64));
+        if after < S::one() {
+            tally.entered += 1;
+            assert!(infeasible, "seed {seed} tick {n}: Gamma {before} then {after} at {x}, {command:?}");
+        }
+        // Far from everything there is nothing to count.
+        if infeasible || command.gamma < S::from_f64(100.0) {
+            let asked = Asked::new(&controller, &state, tick);
+            let guarded = command.status.contains(Status::GUARDED);
+            tally.may_stand += u64::from(asked.may_stand);
+            tally.may_stand_guarded += u64::from(asked.may_stand && guarded);
+            assert!(!(infeasible && asked.may_stand), "seed {seed} tick {n}: infeasible, and standing still is not");
+            if infeasible {
+                let found = clear_velocity(&controller, &state, tick);
+                assert!(
+                    found.is_none(),
+                    "seed {seed} tick {n}: {found:?} leads outside from {:?}, {command:?}",
+                    state.position()
+                );
+            }
+            if infeasible && !asked.more {
+                tally.judged += 1;
+                let found = asked.search();
+                assert!(found.is_none(), "seed {seed} tick {n}: {found:?} is allowed at {x}, {command:?}");
+            }
+        }
+        if !place.moves() && command.status & (Status::EXTRAPOLATED | Status::HELD) == Status::empty() {
+            assert!(!infeasible, "seed {seed} tick {n}: infeasible at rest, Gamma {before} at {x}");
+        }
+        if afterwards > AFTERWARDS {
+            break;
+        }
+    }
+}
+
 fn campaign<S: Scalar, const D: usize>(place: Place, seed: u64) {
     let mut tally = Tally::default();
     let mut seed = seed << 32;
     let wanted = share(6);
-    let (dt, tick) = (S::from_f64(0.001), 0.001);
     while tally.ticks < wanted {
         seed += 1;
-        let Some(World { mut controller, start: mut x }) = place.world::<S, D>(seed) else { continue };
-        let speed = controller.settings().limits.speed.to_f64();
-        let mut afterwards = 0;
-        for n in 0..TICKS {
-            let Some(state) = RobotState::new(x.map(S::from_f64)) else { break };
-            let before = gamma(&controller, state.position());
-            let command = controller.tick(&state, dt);
-            let u = command.velocity.map(|v| v.to_f64());
-            assert!(u.norm() <= speed * (1.0 + 1e-5) + 1e-5, "seed {seed} tick {n}: {u} over {speed}");
-            x += u * tick;
-            tally.ticks += 1;
-            tally.guarded += u64::from(command.status.contains(Status::GUARDED));
-            let infeasible = command.status.contains(Status::INFEASIBLE);
-            tally.infeasible += u64::from(infeasible);
-            afterwards += u64::from(infeasible || afterwards > 0);
-            let after = gamma(&controller, &x.map(S::from_f64));
-            if after < S::one() {
-                tally.entered += 1;
-                assert!(infeasible, "seed {seed} tick {n}: Gamma {before} then {after} at {x}, {command:?}");
-            }
-            // Far from everything there is nothing to count.
-            if infeasible || command.gamma < S::from_f64(100.0) {
-                let asked = Asked::new(&controller, &state, tick);
-                let guarded = command.status.contains(Status::GUARDED);
-                tally.may_stand += u64::from(asked.may_stand);
-                tally.may_stand_guarded += u64::from(asked.may_stand && guarded);
-                assert!(
-                    !(infeasible && asked.may_stand),
-                    "seed {seed} tick {n}: infeasible, and standing still is not"
-                );
-                if infeasible {
-                    let found = clear_velocity(&controller, &state, tick);
-                    assert!(
-                        found.is_none(),
-                        "seed {seed} tick {n}: {found:?} leads outside from {:?}, {command:?}",
-                        state.position()
-                    );
-                }
-                if infeasible && !asked.more {
-                    tally.judged += 1;
-                    let found = asked.search();
-                    assert!(found.is_none(), "seed {seed} tick {n}: {found:?} is allowed at {x}, {command:?}");
-                }
-            }
-            if !place.moves() && command.status & (Status::EXTRAPOLATED | Status::HELD) == Status::empty() {
-                assert!(!infeasible, "seed {seed} tick {n}: infeasible at rest, Gamma {before} at {x}");
-            }
-            if afterwards > AFTERWARDS {
-                break;
-            }
-        }
+        drive::<S, D>(place, seed, &mut tally);
     }
     println!("{D}-D {place:?}: {tally:?}");
     if is_long() {
@@ -144,4 +146,21 @@ campaigns! {
     room_3d_f32: f32, 3, ROOM, 16;
     room_2d_fixed: Fixed, 2, ROOM, 17;
     room_3d_fixed: Fixed, 3, ROOM, 18;
+}
+
+/// Worlds in which a velocity is found by one part of the search alone: from an end of the step, by room rather than by no violation, by tangents of the places
+/// before, by the fourth place and later. And some in which no search but one of other places finds it.
+#[test]
+fn each_part_of_the_search_is_needed() {
+    let mut tally = Tally::default();
+    for seed in [900_011_489, 900_017_142, 900_019_379, 900_004_097, 900_005_002, 900_005_306, 900_010_046] {
+        drive::<f64, 2>(MOVING, seed, &mut tally);
+    }
+    for seed in [900_000_017, 900_000_161, 900_000_524, 900_009_810, 900_018_864, 900_002_896, 900_003_009] {
+        drive::<f64, 2>(ROOM, seed, &mut tally);
+    }
+    for seed in [900_000_051, 900_000_483, 900_013_053] {
+        drive::<f64, 3>(ROOM, seed, &mut tally);
+    }
+    assert!(tally.infeasible > 0);
 }
