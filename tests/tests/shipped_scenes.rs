@@ -20,7 +20,7 @@ fn scenes() -> Vec<(String, Scene)> {
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|f| f.unwrap().path()).collect();
     files.retain(|f| f.extension().is_some_and(|e| e == "toml"));
     files.sort();
-    assert!(files.len() >= 14);
+    assert!(files.len() >= 17);
     files.iter().map(|f| (f.file_stem().unwrap().to_string_lossy().into_owned(), Scene::load(f).unwrap())).collect()
 }
 

@@ -31,7 +31,7 @@ fn all_shipped_scenes_are_right_and_their_cores_apart() {
             }
         }
     }
-    assert!(seen >= 14, "{seen} scenes");
+    assert!(seen >= 17, "{seen} scenes");
     assert!(Scene::builtin().is_ok_and(|s| s.name() == "sbend-foam"));
 }
 
