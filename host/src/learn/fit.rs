@@ -68,8 +68,7 @@ impl<const D: usize> Gram<D> {
         Self { components: mixture.len(), g, y, vv }
     }
 
-    /// The mean squared velocity error of these A_k, slow samples counting more.
-    pub fn error(&self, a: &[SMatrix<f64, D, D>]) -> f64 {
+    fn error(&self, a: &[SMatrix<f64, D, D>]) -> f64 {
         let theta = DMatrix::from_fn(self.components * D, D, |i, r| a[i / D][(r, i % D)]);
         (theta.dot(&(&self.g * &theta)) - 2.0 * theta.dot(&self.y) + self.vv).max(0.0)
     }
