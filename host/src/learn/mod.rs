@@ -1,8 +1,7 @@
 //! Learning a skill from demonstrations.
 //!
-//! Files are read and checked ([`read()`]), brought to one attractor, and normalised. For each number of components a
-//! Gaussian mixture is fitted, then P and A_k under the certificate; the number that follows the demonstrations
-//! best for its size is kept ([`learn`]). The result is a [`ModelFile`], rounded to f32 so that every machine runs the
+//! Files are read and checked ([`read()`]), brought to one attractor, and normalised. P is found, then how many components foretell best what is
+//! held out; Gaussian mixtures of that many and A_k under the certificate are refined, and the best is kept ([`learn`]). The result is a [`ModelFile`], rounded to f32 so that every machine runs the
 //! same numbers, with its certificate checked on them.
 
 mod beside;
