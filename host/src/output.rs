@@ -31,3 +31,15 @@ pub fn spare<'a>(out: &Path, inputs: impl IntoIterator<Item = &'a Path>) -> Resu
     }
     Ok(())
 }
+
+/// Refuses to write a model, which is TOML, into a file whose ending says that it is something else; to be asked before long work.
+///
+/// # Errors
+/// Its ending is that of another kind of file.
+pub fn is_model(out: &Path) -> Result<(), Error> {
+    let ending = out.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if ["json", "yaml", "yml", "csv", "npz", "mat", "mcap", "svg", "png"].contains(&ending.as_str()) {
+        return Err(Error::bad_input(format!("{}: a model is TOML; give it the ending .toml", out.display())));
+    }
+    Ok(())
+}

@@ -35,6 +35,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.toml")));
     let mut found = import(&args.file, Layout { unit: Some(args.unit), order: args.order, means: args.means })?;
     output::spare(&out, [args.file.as_path()])?;
+    output::is_model(&out)?;
     let source = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     found.model.learnt = Some(Provenance { imported: Some(source), ..Provenance::default() });
     memory::note(&mut found.model, &out, &[], &found.starts);

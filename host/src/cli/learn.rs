@@ -102,10 +102,13 @@ fn verdict(learnt: &Learnt, sigma: f64) -> Vec<String> {
         ));
     }
     // With a rate far too high it is the numbers that leave.
-    if q.excursion > WIDE * extent && !hurried {
+    if let Some(from) = q.excursion_from
+        && q.excursion > WIDE * extent
+        && !hurried
+    {
         says.push(format!(
             "from {} it leaves the demonstrations' box by {} on the way: demonstrate from there as well",
-            place(&q.excursion_from[..learnt.model.dimension]),
+            place(&from[..learnt.model.dimension]),
             percent(q.excursion)
         ));
     }
@@ -218,6 +221,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         plot::check_format(figure)?;
     }
     output::spare(&out, args.demos.iter().map(PathBuf::as_path))?;
+    output::is_model(&out)?;
     let new = read::recordings(&args.demos, args.unit)?;
     let old = args.add_to.as_ref().map(|path| ModelFile::read(path).map(|model| (path, model))).transpose()?;
     let learnt_with = old.as_ref().and_then(|(_, model)| model.learnt.as_ref());
@@ -262,7 +266,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
             "name": learnt.model.name, "model": out, "figure": figure, "dimension": learnt.model.dimension, "k": k, "demonstrations": demonstrations,
             "rmse_m_s": q.rmse, "e_dot": q.e_dot, "dtwd_m": q.dtwd, "path_error_m": q.path_error, "pace": q.pace, "margin": margin, "verdict": verdict(&learnt, options.sigma),
             "converged": q.converged, "rollouts": q.rollouts, "robust": q.robust, "beside": q.beside, "excursion_m": q.excursion,
-            "excursion_from": &q.excursion_from[..learnt.model.dimension], "certified": true, "seconds": seconds, "warnings": warnings,
+            "excursion_from": q.excursion_from.as_ref().map(|x| &x[..learnt.model.dimension]), "certified": true, "seconds": seconds, "warnings": warnings,
         }));
     } else {
         say!(

@@ -8,6 +8,7 @@ use super::{Finished, Point, number, print_json};
 use crate::error::{Error, Outcome};
 use crate::learn::memory;
 use crate::model::{Provenance, Similarity, SimilarityError, Text};
+use crate::output;
 
 /// Options of `pliant move`.
 #[derive(Clone, Debug, clap::Args)]
@@ -56,6 +57,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         let help = "say where to by --attractor or --start, how large by --scale, which way by --turn";
         return Err(Error::bad_input(format!("{}: nothing to change", args.model.display())).with_help(help));
     }
+    output::is_model(&args.out)?;
     let text = Text::read(&args.model)?;
     let model = text.model()?;
     let mut by = Similarity::identity(model.dimension);

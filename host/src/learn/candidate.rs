@@ -6,14 +6,11 @@ use super::field::Field;
 use super::fit::Gram;
 use super::gmm::{self, Mixture, Samples};
 use super::quality::{self, Quality, Recording};
-use super::reference::{Track, admissible, follow};
+use super::reference::{INSIDE, Track, admissible};
 use super::refine::{Path, Task, Weights, refine};
+use super::taught::Taught;
 use nalgebra::{SMatrix, SVector};
 
-/// Reference paths and velocities fall a little faster than the rate asked for, so that they lie inside the certificate.
-const INSIDE: f64 = 1.1;
-/// A sample moved farther than this, in extents, is learnt in both places.
-const MOVED: f64 = 3e-3;
 /// Errors of the same weight, as parts of the extent, of the mean speed, and of one.
 const SAME_PATH: f64 = 0.02;
 const SAME_SPEED: f64 = 0.14;
@@ -73,6 +70,8 @@ pub struct Attempt {
 pub struct Lesson<'a, const D: usize> {
     /// As demonstrated.
     pub shown: &'a [Track<D>],
+    /// What is learnt along each.
+    pub taught: &'a [Taught<D>],
     /// Of V.
     pub p: SMatrix<f64, D, D>,
     /// Rate of the certificate.
@@ -102,29 +101,16 @@ impl<const D: usize> Lesson<'_, D> {
     pub fn attempt(&self, attempt: Attempt) -> Option<Candidate<D>> {
         let Attempt { components, grouping, effort, again } = attempt;
         let seed = self.seed.wrapping_add(again);
-        let rate = self.sigma * INSIDE;
-        // No skill waits: where a demonstrator does, most of all at the start, it goes on.
-        let going: Vec<_> = self.shown.iter().map(beside::going).collect();
-        let moved: Vec<_> = going.iter().map(|t| follow(t, &self.p, rate)).collect();
         let mut targets = Samples { x: vec![], v: vec![] };
-        let (mut label, mut belief) = (vec![], vec![]);
-        for (track, (reference, away)) in going.iter().zip(&moved) {
-            let segments = segments(reference, components);
-            for (i, (x, v)) in track.x.iter().zip(&track.v).enumerate() {
-                targets.x.push(*x);
-                belief.push(track.belief(x));
-                targets.v.push(admissible(x, v, &self.p, rate));
-                label.push(segments[i]);
-                if away[i] > MOVED {
-                    targets.x.push(reference.x[i]);
-                    belief.push(track.belief(&reference.x[i]));
-                    targets.v.push(reference.v[i]);
-                    label.push(segments[i]);
-                }
-            }
+        let (mut piece, mut belief) = (vec![], vec![]);
+        for one in self.taught {
+            targets.x.extend(&one.samples.x);
+            targets.v.extend(&one.samples.v);
+            belief.extend(&one.belief);
+            piece.extend(one.pieces(components));
         }
         let mixture = match grouping {
-            Grouping::Segments => gmm::labelled(&targets.x, &label, components),
+            Grouping::Segments => gmm::labelled(&targets.x, &piece, components),
             Grouping::Mixture => {
                 // A quarter of the samples says as well where they are.
                 let stride = targets.x.len().div_ceil(350).max(1);
@@ -138,18 +124,18 @@ impl<const D: usize> Lesson<'_, D> {
 
         // A single component is linear: it lingers nowhere, and the samples alone say what it is.
         if components > 1 {
-            let references: Vec<_> = moved.iter().map(|m| m.0.clone()).collect();
+            let references: Vec<_> = self.taught.iter().map(|one| one.reference.clone()).collect();
             for (x, v) in beside::tube(&references, seed) {
                 belief.push(1.0);
-                targets.v.push(admissible(&x, &v, &self.p, rate));
+                targets.v.push(admissible(&x, &v, &self.p, self.sigma * INSIDE));
                 targets.x.push(x);
             }
         }
-        let mut followed: Vec<_> = moved.iter().map(|m| m.0.after_start()).collect();
+        let mut followed: Vec<_> = self.taught.iter().map(|one| one.reference.after_start()).collect();
         let mut shown: Vec<_> = self.shown.iter().map(Track::after_start).collect();
         let mut company = vec![];
         if self.shown.len() <= FEW {
-            followed.extend(moved.iter().flat_map(|m| beside::companions(&m.0)));
+            followed.extend(self.taught.iter().flat_map(|one| beside::companions(&one.reference)));
             company.extend(self.shown.iter().flat_map(beside::companions));
             shown.extend(company.iter().cloned());
         }
@@ -199,25 +185,4 @@ fn score(q: &Quality) -> f64 {
     let stranded = (q.rollouts - q.converged) as f64;
     let late = (q.beside - q.robust) as f64;
     q.path_error / SAME_PATH + q.rmse / SAME_SPEED + q.e_dot / SAME_DIRECTION + 100.0 * stranded + LATE * late
-}
-
-/// The number of the piece each sample is in, of `count` pieces alike in length, turning and time.
-fn segments<const D: usize>(track: &Track<D>, count: usize) -> Vec<usize> {
-    /// Turning, in radians, that counts as none.
-    const STRAIGHT: f64 = 0.3;
-    let n = track.x.len();
-    let pieces = |i: usize| {
-        let (a, b) = (track.v[i], track.v[i - 1]);
-        let size = a.norm() * b.norm();
-        let turn = if size > 0.0 { (a.dot(&b) / size).clamp(-1.0, 1.0).acos() } else { 0.0 };
-        ((track.x[i] - track.x[i - 1]).norm(), turn)
-    };
-    let (length, turning) = (1..n).map(pieces).fold((1e-12, STRAIGHT), |s, p| (s.0 + p.0, s.1 + p.1));
-    let mut along = vec![0.0; n];
-    for i in 1..n {
-        let (step, turn) = pieces(i);
-        along[i] = along[i - 1] + step / length + turn / turning + 1.0 / n as f64;
-    }
-    let total = along[n - 1].max(1e-12);
-    along.iter().map(|a| ((a / total * count as f64) as usize).min(count - 1)).collect()
 }

@@ -1,14 +1,14 @@
 //! Learning a skill from demonstrations.
 //!
-//! Files are read and checked ([`read()`]), brought to one attractor, and normalised. For each number of components a
-//! Gaussian mixture is fitted, then P and A_k under the certificate; the number that follows the demonstrations
-//! best for its size is kept ([`learn`]). The result is a [`ModelFile`], rounded to f32 so that every machine runs the
+//! Files are read and checked ([`read()`]), brought to one attractor, and normalised. P is found, then how many components foretell best what is
+//! held out; Gaussian mixtures of that many and A_k under the certificate are refined, and the best is kept ([`learn`]). The result is a [`ModelFile`], rounded to f32 so that every machine runs the
 //! same numbers, with its certificate checked on them.
 
 mod beside;
 mod between;
 mod candidate;
 mod cleaning;
+mod components;
 mod cone;
 pub mod demonstration;
 mod error;
@@ -24,6 +24,7 @@ pub mod read;
 mod reference;
 mod refine;
 mod smoothing;
+mod taught;
 mod warning;
 
 pub use demonstration::{Demonstration, Demonstrations, Unit};
@@ -40,6 +41,7 @@ use gmm::{MAX_COMPONENTS, Mixture};
 use nalgebra::{SMatrix, SVector};
 use pliant_core::Fixed;
 use std::path::PathBuf;
+use taught::Taught;
 
 /// Samples of a demonstration used for fitting; more add time and little else.
 const TRACK_SAMPLES: usize = 200;
@@ -171,14 +173,6 @@ fn fixed<const D: usize>(all: &[nalgebra::DVector<f64>]) -> Vec<SVector<f64, D>>
     all.iter().map(|p| SVector::from_column_slice(p.as_slice())).collect()
 }
 
-/// What is tried where the number of components is not given. The last ones only where all before are poor.
-const ATTEMPTS: [(usize, Grouping, Effort); 5] = [
-    (6, Grouping::Segments, Effort::Usual),
-    (12, Grouping::Mixture, Effort::Usual),
-    (12, Grouping::Segments, Effort::Usual),
-    (12, Grouping::Mixture, Effort::More),
-    (12, Grouping::Segments, Effort::More),
-];
 /// From few demonstrations a bad start is not made up for by the others: where the path's error, in multiples of a good one's, is beyond this, more
 /// starts are tried, this many times both groupings.
 const AMISS: f64 = 0.75;
@@ -190,25 +184,18 @@ const FOLLOW: f64 = 2.0;
 /// What a component has to gain: a device evaluates every one in every tick.
 const PRICE: f64 = 0.01;
 
-/// Components that this many demonstrations can speak for: a stroke has about twenty numbers to give, a component takes ten; and no more than
-/// there are samples.
-fn most_components(demonstrations: &Demonstrations) -> usize {
-    (2 + 2 * demonstrations.items().len()).min(demonstrations.samples()).clamp(1, MAX_COMPONENTS)
-}
-
-/// All that may be tried with this many components, or with as many as there may be.
-fn attempts(components: Option<usize>, most: usize, demonstrations: usize) -> Vec<Attempt> {
-    let (kinds, k) = match components {
-        Some(k) => ([(k, Grouping::Mixture, Effort::Usual), (k, Grouping::Segments, Effort::Usual)].to_vec(), k),
-        None => (ATTEMPTS.map(|(k, grouping, effort)| (k.min(most), grouping, effort)).to_vec(), most),
+/// All that may be tried with this many components: both groupings, and from few demonstrations again; where the number was chosen and all before
+/// are poor, longer as well.
+fn attempts(components: usize, chosen: bool, demonstrations: usize) -> Vec<Attempt> {
+    let both = |effort, again| {
+        [Grouping::Mixture, Grouping::Segments].map(|grouping| Attempt { components, grouping, effort, again })
     };
-    let first = |(components, grouping, effort)| Attempt { components, grouping, effort, again: 0 };
-    let mut all: Vec<_> = kinds.into_iter().map(first).collect();
+    let mut all = both(Effort::Usual, 0).to_vec();
+    if chosen {
+        all.extend(both(Effort::More, 0));
+    }
     if demonstrations <= FEW {
-        let groupings = [Grouping::Mixture, Grouping::Segments];
-        let more = (1..=AGAIN)
-            .flat_map(|again| groupings.map(|grouping| Attempt { again, ..first((k, grouping, Effort::Usual)) }));
-        all.extend(more);
+        all.extend((1..=AGAIN).flat_map(|again| both(Effort::Usual, again)));
     }
     all
 }
@@ -221,13 +208,18 @@ fn learn_in<const D: usize>(
     let recordings = recordings::<D>(&demonstrations);
     let scale = Scale::of(&demonstrations, &recordings);
     let tracks = tracks(&recordings, demonstrations.shifts(), &scale);
-    let most = most_components(&demonstrations);
-    let attempts = attempts(options.components, most, tracks.len());
     progress(0.0);
     let sigma = options.sigma * scale.length / scale.speed;
+    let p = reference::search(&tracks, sigma);
+    let taught: Vec<_> = tracks.iter().map(|track| Taught::new(track, &p, sigma * reference::INSIDE)).collect();
+    let components = options.components.unwrap_or_else(|| {
+        components::foretelling_best(&taught, &p, sigma, components::most(tracks.len(), demonstrations.samples()))
+    });
+    let attempts = attempts(components, options.components.is_none(), tracks.len());
     let lesson = Lesson {
         shown: &tracks,
-        p: reference::search(&tracks, sigma),
+        taught: &taught,
+        p,
         sigma,
         direction: options.direction_weight,
         pace: options.pace,
@@ -235,17 +227,17 @@ fn learn_in<const D: usize>(
     };
     let mut best: Option<(f64, f64, ModelFile)> = None;
     let mut failure = String::from("no mixture fits the samples");
-    for (i, &attempt) in attempts.iter().enumerate() {
+    for (i, attempt) in attempts.iter().enumerate() {
         let good = best.as_ref().is_some_and(|b| match attempt {
             Attempt { again: 1.., .. } => b.1 < AMISS,
             Attempt { effort: Effort::More, .. } => b.0 < POOR,
             _ => false,
         });
-        if good || attempts[..i].contains(&attempt) {
+        if good {
             continue;
         }
         let follow = if attempt.effort == Effort::More { FOLLOW } else { 0.0 };
-        if let Some(candidate) = lesson.attempt(attempt) {
+        if let Some(candidate) = lesson.attempt(*attempt) {
             let price = 1.0 + PRICE * candidate.mixture.len() as f64;
             let (score, path) = (candidate.score * price, candidate.path * price);
             if best.as_ref().is_none_or(|b| score + follow * path < b.0 + follow * b.1) {

@@ -44,8 +44,8 @@ pub struct Quality {
     pub beside: usize,
     /// The farthest that one of them, or a rollout from a demonstration's start, leaves the box about the demonstrations and that rollout's start, m.
     pub excursion: f64,
-    /// Where that rollout starts, m; entries beyond the dimension are 0.
-    pub excursion_from: [f64; 3],
+    /// Where that rollout starts, m, entries beyond the dimension 0; of one skill that leaves it. Places have no mean and no median.
+    pub excursion_from: Option<[f64; 3]>,
 }
 
 /// One demonstration.
@@ -152,7 +152,7 @@ pub fn measure<const D: usize>(motion: &Motion<D>, recordings: &[Recording<D>], 
         robust,
         beside: places.len(),
         excursion: farthest.0,
-        excursion_from: std::array::from_fn(|i| farthest.1.get(i).copied().unwrap_or(0.0)),
+        excursion_from: (farthest.0 > 0.0).then(|| std::array::from_fn(|i| farthest.1.get(i).copied().unwrap_or(0.0))),
     }
 }
 

@@ -38,6 +38,8 @@ impl<const D: usize> Track<D> {
     }
 }
 
+/// Reference paths and velocities fall a little faster than the rate asked for, so that they lie inside the certificate.
+pub const INSIDE: f64 = 1.1;
 /// A direction that is known to this angle, in radians, counts half.
 const KNOWN: f64 = 0.02;
 

@@ -37,6 +37,21 @@ fn every_command_makes_the_folders_it_writes_into() {
 }
 
 #[test]
+fn a_model_is_not_written_under_the_name_of_another_kind_of_file() {
+    let folder = inputs("kinds");
+    for (arguments, file) in [
+        (&["learn", "a.csv"][..], "m.json"),
+        (&["import", "foreign.yml"], "m.YML"),
+        (&["move", "m.toml", "--scale", "2"], "m.csv"),
+    ] {
+        let mut all = arguments.to_vec();
+        all.extend(["-o", file]);
+        refused(&folder, &all, &[file, "a model is TOML"]);
+        assert!(!folder.0.join(file).exists(), "{file}");
+    }
+}
+
+#[test]
 fn what_is_read_is_not_written_over() {
     let folder = inputs("over");
     for (arguments, file) in [

@@ -2,11 +2,8 @@
 
 use std::path::Path;
 
-use pliant_core::Scalar;
-
 use super::Source;
 use crate::learn::{self, Demonstrations, LearnError, Learnt, Options, Quality, Unit, read};
-use crate::model::Skill;
 use crate::plot::Portrait;
 use crate::study::cpu;
 
@@ -25,7 +22,7 @@ pub struct Measured {
     pub seconds: f64,
     /// Does its certificate hold in f32, rounding included?
     pub certified: bool,
-    /// The rate that is certified, 1/s.
+    /// The rate that is proved in f32, 1/s.
     pub margin: f64,
     /// What it was learnt from.
     pub shown: Demonstrations,
@@ -76,10 +73,7 @@ pub fn learn_one(source: &Source, unit: Option<Unit>, options: &Options) -> Resu
     let options = Options { name: source.name.clone(), ..options.clone() };
     let (learnt, seconds) = cpu::timed(|| learn::learn_from(shown, &options, &|_| {}));
     let Learnt { model, quality, demonstrations: shown, .. } = learnt.map_err(failed)?;
-    let certificate = model.skill::<f32>().map(|skill| match skill {
-        Skill::Planar(ds) => ds.certificate().rate.to_f64(),
-        Skill::Spatial(ds) => ds.certificate().rate.to_f64(),
-    });
+    let proof = model.proof::<f32>();
     let note = format!("DTWD {:.0} mm", quality.dtwd * 1e3);
     Ok(Measured {
         name: source.name.clone(),
@@ -87,8 +81,8 @@ pub fn learn_one(source: &Source, unit: Option<Unit>, options: &Options) -> Resu
         quality,
         held_out: None,
         seconds,
-        certified: certificate.is_ok(),
-        margin: certificate.unwrap_or(0.0),
+        certified: proof.is_ok() && model.certified::<f32>(),
+        margin: proof.map_or(0.0, |p| p.margin),
         portrait: Portrait::new(source.name.clone(), note, &model, &shown, Unit::Mm),
         shown,
     })
@@ -110,7 +104,7 @@ impl HeldOut {
                 robust: all.iter().map(|q| q.robust).sum(),
                 beside: all.iter().map(|q| q.beside).sum(),
                 excursion: all.iter().map(|q| q.excursion).fold(0.0, f64::max),
-                excursion_from: [0.0; 3],
+                excursion_from: None,
             },
             worst: all.iter().map(|q| q.dtwd).fold(0.0, f64::max),
         })

@@ -48,7 +48,7 @@ fn held_out_medians(measured: &[Measured]) -> Option<HeldOut> {
 
 fn motions(measured: &[Measured], held_out: bool) -> Table {
     let title = "The motions. RMSE: mean over samples of the root of the mean over axes of the squared velocity error; e_dot: mean of 1 - cos; DTWD: \
-                 dynamic time warping distance of rollouts, mean over demonstrations; margin: the rate certified in f32, rounding included. CPU s: processor time of one core. \
+                 dynamic time warping distance of rollouts, mean over demonstrations; margin: the rate proved in f32, as `pliant check` says it. CPU s: processor time of one core. \
                  Held out: the mean over demonstrations, each measured by what was learnt from the others, and the worst DTWD of one";
     let mut header = vec![
         "motion",
@@ -115,7 +115,7 @@ fn medians<'a>(all: impl Iterator<Item = &'a Quality> + Clone) -> Option<Quality
         robust: all.clone().map(|q| q.robust).sum(),
         beside: all.clone().map(|q| q.beside).sum(),
         excursion: of(|q| q.excursion)?,
-        excursion_from: [0.0; 3],
+        excursion_from: None,
     })
 }
 

@@ -65,7 +65,7 @@ fn a_mean_is_over_demonstrations_and_counts_add_up() {
         robust: 1,
         beside: 2,
         excursion: 0.0,
-        excursion_from: [0.0; 3],
+        excursion_from: None,
     };
     let HeldOut { mean, worst } = HeldOut::of(&[one, Quality { rmse: 3.0, dtwd: 8.0, converged: 0, ..one }]).unwrap();
     assert_eq!((mean.rmse, mean.dtwd, mean.converged, mean.rollouts), (2.0, 5.0, 1, 2));
