@@ -89,7 +89,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         (gauge > S::zero() && length > S::zero() && slope > S::zero()).then(|| {
             let way = if self.spec.wall { -S::one() } else { S::one() };
             // grad lambda . u = lambda
-            let gap = (direction / length).dot(&u) * (S::one() - S::one() / gauge) / steepest / slope;
+            let gap = (direction / length).dot(&u) * (S::one() - S::one() / gauge) / (steepest * slope);
             (times(&self.spec.rotation, &(outward * (way / slope))), gap * way)
         })
     }
@@ -118,7 +118,10 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     pub(crate) fn is_deeper(&self, gamma: S, reach: S) -> bool {
         let one = S::one();
         let change = reach * self.slimmest;
-        if self.spec.wall {
+        // In fixed point the reciprocal of what is very thin is out of range.
+        if self.slimmest > S::MAX * S::from_f64(0.5) {
+            false
+        } else if self.spec.wall {
             let gauge = one + change;
             gamma * (gauge * gauge).powi(self.body.power()) < one
         } else {

@@ -162,5 +162,8 @@ fn each_part_of_the_search_is_needed() {
     for seed in [900_000_051, 900_000_483, 900_013_053] {
         drive::<f64, 3>(ROOM, seed, &mut tally);
     }
+    // Where fixed point had no digits left.
+    drive::<Fixed, 2>(ROOM, 73_014_446_955, &mut tally);
+    drive::<Fixed, 3>(ROOM, 77_309_416_077, &mut tally);
     assert!(tally.infeasible > 0);
 }
