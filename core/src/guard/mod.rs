@@ -129,7 +129,10 @@ impl<S: Scalar> Guard<S> {
             let there = View { at: &landing, step: step + step, approach: S::one(), skin, near: &next.around.near };
             let mut seen = HalfSpaces::new(speed);
             self.look(next, &there, &mut seen);
-            if let Some(velocity) = seen.allowed(wanted) {
+            // In fixed point what half-spaces of thin walls say may be off by more than the skin.
+            let outside =
+                |u: &Vector<S, D>| next.table.has_only_ellipsoids() || next.is_clear(&(x + u * dt), rounding(x, 1.0));
+            if let Some(velocity) = seen.allowed(wanted).filter(outside) {
                 return Solution::found(velocity, wanted);
             }
         }

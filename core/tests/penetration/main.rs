@@ -165,5 +165,6 @@ fn each_part_of_the_search_is_needed() {
     // Where fixed point had no digits left.
     drive::<Fixed, 2>(ROOM, 73_014_446_955, &mut tally);
     drive::<Fixed, 3>(ROOM, 77_309_416_077, &mut tally);
+    drive::<Fixed, 3>(ROOM, 77_309_427_608, &mut tally);
     assert!(tally.infeasible > 0);
 }
