@@ -130,8 +130,7 @@ impl<S: Scalar> Guard<S> {
             let mut seen = HalfSpaces::new(speed);
             self.look(next, &there, &mut seen);
             // In fixed point what half-spaces of thin walls say may be off by more than the skin.
-            let outside =
-                |u: &Vector<S, D>| next.table.has_only_ellipsoids() || next.is_clear(&(x + u * dt), rounding(x, 1.0));
+            let outside = |u: &Vector<S, D>| next.table.is_round() || next.is_clear(&(x + u * dt), rounding(x, 1.0));
             if let Some(velocity) = seen.allowed(wanted).filter(outside) {
                 return Solution::found(velocity, wanted);
             }
@@ -154,7 +153,6 @@ impl<S: Scalar> Guard<S> {
         all: &mut HalfSpaces<S, D>,
     ) {
         let skin = view.skin;
-        let rate = S::one() / next.dt;
         let gone = view.at - next.x;
         let mut keep = |normal: Vector<S, D>, gap: S| {
             let room = gap - skin;
@@ -165,7 +163,8 @@ impl<S: Scalar> Guard<S> {
             } else {
                 S::one()
             };
-            all.add(HalfSpace { normal, offset: (normal.dot(&gone) - room * share) * rate });
+            // Divided, for in fixed point the reciprocal of a short step is out of range.
+            all.add(HalfSpace { normal, offset: (normal.dot(&gone) - room * share) / next.dt });
         };
         let wish = next.wanted * next.dt - gone;
         for (index, reach) in view.near {

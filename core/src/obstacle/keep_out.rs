@@ -64,9 +64,11 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         );
     }
 
-    /// Is it an ellipsoid with p = 1, and no wall?
-    pub(crate) fn is_plain(&self) -> bool {
-        self.plain
+    /// Is it an ellipsoid with p = 1, no wall, and at most three times as long as wide?
+    pub(crate) fn is_round(&self) -> bool {
+        let least = self.hard.iter().fold(S::MAX, |m, hard| m.min(*hard));
+        // And what rounding makes of three.
+        self.plain && self.hard.iter().all(|hard| *hard <= least * S::from_f64(3.001))
     }
 
     /// Is it a wall whose free space is convex?

@@ -117,8 +117,8 @@ pub struct Table<S: Scalar, const D: usize, const CAP: usize> {
     entries: heapless::Vec<Entry<S, D>, CAP>,
     clusters: Clusters<CAP>,
     scan: Scan<S, D>,
-    /// Are there no obstacles but ellipsoids?
-    only_ellipsoids: bool,
+    /// Are all obstacles ellipsoids that are not thin?
+    only_round: bool,
     revision: u32,
 }
 
@@ -135,7 +135,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             entries: heapless::Vec::new(),
             clusters: Clusters::new(),
             scan: Scan::default(),
-            only_ellipsoids: true,
+            only_round: true,
             revision: 0,
         }
     }
@@ -343,13 +343,13 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         (around.velocity, around.unusable) = modulation.finish(of_obstacles, points.as_ref());
     }
 
-    /// Are there no obstacles but ellipsoids?
-    pub(crate) fn has_only_ellipsoids(&self) -> bool {
-        self.only_ellipsoids
+    /// Are there no obstacles but ellipsoids that are not thin, and no range points?
+    pub(crate) fn is_round(&self) -> bool {
+        self.only_round && self.scan.points().is_empty()
     }
 
     fn sort_out(&mut self) {
-        self.only_ellipsoids = self.entries.iter().all(|e| e.obstacle.is_plain());
+        self.only_round = self.entries.iter().all(|e| e.obstacle.is_round());
     }
 
     /// The obstacle at this place in the table.
