@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
 use pliant_core::{
-    Ageing, Controller, Guard, Limits, Motion, Obstacle, ObstacleSpec, RobotState, Scan, Settings, Shape, Status,
-    Vector, rotation,
+    Ageing, Controller, Fixed, Guard, Limits, Motion, Obstacle, ObstacleSpec, RobotState, Scalar, Scan, Settings,
+    Shape, Status, Vector, rotation,
 };
 
 type V = Vector<f64, 2>;
@@ -310,4 +310,62 @@ fn a_tree_seen_from_its_root_is_gone_round_from_everywhere_to_everywhere() {
             assert!(least > 1.0 && flags.contains(Status::CLUSTER));
         }
     }
+}
+
+/// A core comes faster than the robot may go, at any length of step: it is entered with `INFEASIBLE` only, in fixed point too, where 1/dt is out of range.
+#[test]
+fn short_steps_are_guarded_as_others() {
+    fn drive<S: Scalar>(dt: f64) {
+        let s = S::from_f64;
+        let mut controller: Controller<S, 2, 4> =
+            Controller::new(Motion::linear(Vector::<S, 2>::zeros(), S::one()).unwrap(), Settings::default());
+        let mut settings = *controller.settings();
+        settings.limits.speed = s(0.5);
+        controller.set_settings(settings);
+        let coming = ObstacleSpec {
+            shape: Shape::ellipsoid(Vector::<S, 2>::new(s(0.05), s(0.05))),
+            center: Vector::<S, 2>::new(s(-0.06), S::zero()),
+            velocity: Vector::<S, 2>::new(s(2.0), S::zero()),
+            ..ObstacleSpec::default()
+        };
+        controller.upsert(1, Obstacle::new(coming).unwrap(), S::zero()).unwrap();
+        let mut x = Vector::<f64, 2>::zeros();
+        for n in 0..(0.02 / dt) as u32 {
+            let state = RobotState::new(x.map(s)).unwrap();
+            let command = controller.tick(&state, s(dt));
+            x += command.velocity.map(|v| v.to_f64()) * s(dt).to_f64();
+            let inside = controller.table().iter().any(|e| e.obstacle().gamma(&x.map(s)) < S::one());
+            assert!(!inside || command.status.contains(Status::INFEASIBLE), "dt {dt}, {n}: {command:?}");
+        }
+    }
+    for dt in [1e-3, 4e-4, 1e-4, 5e-5] {
+        drive::<f64>(dt);
+        drive::<f32>(dt);
+        drive::<Fixed>(dt);
+    }
+}
+
+/// A flat ellipsoid comes broadside: its nearest way out is across, though from the middle of the robot's place it looks longest.
+#[test]
+fn a_flat_ellipsoid_is_left_across() {
+    fn drive<S: Scalar>() {
+        let s = S::from_f64;
+        let v = |x: f64, y: f64| Vector::<S, 2>::new(s(x), s(y));
+        let mut controller: Controller<S, 2, 4> =
+            Controller::new(Motion::linear(v(0.0, 1.0), S::one()).unwrap(), Settings::default());
+        let mut settings = *controller.settings();
+        settings.limits.speed = s(2.0);
+        controller.set_settings(settings);
+        let flat =
+            ObstacleSpec { shape: Shape::ellipsoid(v(0.05, 0.005)), velocity: v(0.0, 2.0), ..ObstacleSpec::default() };
+        controller.upsert(1, Obstacle::new(flat).unwrap(), S::zero()).unwrap();
+        let state = RobotState::new(v(0.0475, 0.002)).unwrap();
+        let command = controller.tick(&state, s(0.001));
+        let next = state.position() + command.velocity * s(0.001);
+        assert!(!command.status.contains(Status::INFEASIBLE), "{command:?}");
+        assert!(controller.table().iter().all(|e| e.obstacle().gamma(&next) >= S::one()), "{command:?}");
+    }
+    drive::<f64>();
+    drive::<f32>();
+    drive::<Fixed>();
 }

@@ -4,7 +4,7 @@
 use pliant_tests::programs;
 
 /// Ticks whose bits are compared, on each board.
-const BITS: u64 = 30_000;
+const BITS: u64 = 100_000;
 
 #[test]
 fn boards_compute_the_same_bits_and_count_instructions() {

@@ -184,13 +184,20 @@ const FOLLOW: f64 = 2.0;
 /// What a component has to gain: a device evaluates every one in every tick.
 const PRICE: f64 = 0.01;
 
+/// Where demonstrations are too few to choose by, so many are tried as well.
+const SIX: usize = 6;
+
 /// All that may be tried with this many components: both groupings, and from few demonstrations again; where the number was chosen and all before
 /// are poor, longer as well.
 fn attempts(components: usize, chosen: bool, demonstrations: usize) -> Vec<Attempt> {
     let both = |effort, again| {
         [Grouping::Mixture, Grouping::Segments].map(|grouping| Attempt { components, grouping, effort, again })
     };
-    let mut all = both(Effort::Usual, 0).to_vec();
+    let mut all = vec![];
+    if chosen && demonstrations <= FEW && components > SIX {
+        all.push(Attempt { components: SIX, grouping: Grouping::Segments, effort: Effort::Usual, again: 0 });
+    }
+    all.extend(both(Effort::Usual, 0));
     if chosen {
         all.extend(both(Effort::More, 0));
     }
