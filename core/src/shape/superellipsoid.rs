@@ -15,6 +15,16 @@ impl Superellipsoid {
         (0..self.p).fold(S::zero(), |sum, _| sum + S::one())
     }
 
+    /// gamma^(1/2p). Of u over its largest entry, for in fixed point the high powers of a third are nothing.
+    fn gauge<S: Scalar, const D: usize>(&self, u: &Vector<S, D>) -> S {
+        let largest = u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
+        if !(largest > S::zero()) {
+            return largest;
+        }
+        let level = u.iter().fold(S::zero(), |sum, u| sum + ((*u / largest) * (*u / largest)).powi(self.p));
+        largest * root(level, self.p)
+    }
+
     /// What a displacement of this length may add to the tangent of gamma, which is convex with second derivatives up
     /// to 2p(2p - 1) within the surface; and a fifth of that more.
     fn bend<S: Scalar>(&self, stride: S) -> S {
@@ -74,7 +84,7 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
             }
             // A step is longer than the bend allows: |delta_i| <= s, with s times the gauge of (1, 1, ...) what the
             // gauge of u lacks to one, for no gauge of a sum is more than the sum of the gauges.
-            let room = (one - root(gamma, self.p)) / root(at.u.iter().fold(S::zero(), |sum, _| sum + one), self.p);
+            let room = (one - self.gauge(&at.u)) / root(at.u.iter().fold(S::zero(), |sum, _| sum + one), self.p);
             for i in 0..D {
                 let side = |sign: S| Vector::from_fn(|j, _| if i == j { sign } else { S::zero() });
                 keep(normal(side(-one)), room * shortest);

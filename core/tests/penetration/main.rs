@@ -166,5 +166,7 @@ fn each_part_of_the_search_is_needed() {
     drive::<Fixed, 2>(ROOM, 73_014_446_955, &mut tally);
     drive::<Fixed, 3>(ROOM, 77_309_416_077, &mut tally);
     drive::<Fixed, 3>(ROOM, 77_309_427_608, &mut tally);
+    drive::<Fixed, 2>(ROOM, 73_014_473_984, &mut tally);
+    drive::<Fixed, 3>(ROOM, 77_309_442_427, &mut tally);
     assert!(tally.infeasible > 0);
 }
