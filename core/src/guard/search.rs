@@ -15,7 +15,7 @@
 //! the step along each axis of the nearest obstacle, four or six in all. So it is bounded, and what is narrow can be missed.
 
 use super::{BARE, Guard, HalfSpace, HalfSpaces, Next, View, rounding};
-use crate::{Matrix, Obstacle, Scalar, Vector};
+use crate::{Matrix, Obstacle, Scalar, Vector, times};
 
 /// Places one after the other from x; and near round walls.
 const PLACES: usize = 2;
@@ -59,8 +59,10 @@ impl<S: Scalar> Guard<S> {
         }
         let places = if search.walls.is_empty() { PLACES } else { PLACES_IN_WALLS };
         search.from(Vector::zeros(), places).or_else(|| {
-            let ends = (0..D).flat_map(|i| [speed, -speed].map(|speed| frame.column(i) * speed));
-            ends.into_iter().find_map(|end| search.from(end, 1))
+            (0..D).flat_map(|axis| [(axis, speed), (axis, -speed)]).find_map(|(axis, speed)| {
+                let along = Vector::from_fn(|i, _| if i == axis { speed } else { S::zero() });
+                search.from(times(&frame, &along), 1)
+            })
         })
     }
 }
