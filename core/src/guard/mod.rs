@@ -54,7 +54,7 @@ pub use program::{HalfSpace, Solution, nearest};
 use crate::obstacle::Outlook;
 use crate::surroundings::Surroundings;
 use crate::table::Table;
-use crate::{Obstacle, Scalar, Vector, norm};
+use crate::{Obstacle, Scalar, Vector};
 
 /// Most half-spaces of one tick; those that bind the least and find no room are kept by going more slowly.
 const CAPACITY: usize = 192;
@@ -106,16 +106,7 @@ impl<S: Scalar> Guard<S> {
         let here = View { at: x, step: speed * dt, approach: self.approach, skin: next.skin, near: &around.near };
         self.look(&next, &here, &mut seen);
         let best = seen.nearest(wanted);
-        if best.feasible {
-            return best;
-        }
-        let other = self.otherwise(&next, best, seen.fastest);
-        // In fixed point, far out, what half-spaces allow may be out of range.
-        if norm(&other.velocity) <= speed + speed * S::from_f64(4e-6) + rounding(&Vector::<S, D>::zeros(), BARE) {
-            other
-        } else {
-            Solution { velocity: Vector::zeros(), ..best }
-        }
+        if best.feasible { best } else { self.otherwise(&next, best, seen.fastest) }
     }
 
     /// What is left where not every half-space can be fulfilled, `best` violates them least, and `fastest` is the largest offset, m/s.

@@ -15,7 +15,7 @@
 //! the step along each axis of the nearest obstacle, four or six in all. So it is bounded, and what is narrow can be missed.
 
 use super::{BARE, Guard, HalfSpace, HalfSpaces, Next, View, rounding};
-use crate::{Matrix, Obstacle, Scalar, Vector, times};
+use crate::{Matrix, Obstacle, Scalar, Vector, times, unit};
 
 /// Places one after the other from x; and near round walls.
 const PLACES: usize = 2;
@@ -60,8 +60,9 @@ impl<S: Scalar> Guard<S> {
         let places = if search.walls.is_empty() { PLACES } else { PLACES_IN_WALLS };
         search.from(Vector::zeros(), places).or_else(|| {
             (0..D).flat_map(|axis| [(axis, speed), (axis, -speed)]).find_map(|(axis, speed)| {
-                let along = Vector::from_fn(|i, _| if i == axis { speed } else { S::zero() });
-                search.from(times(&frame, &along), 1)
+                let along = Vector::from_fn(|i, _| if i == axis { S::one() } else { S::zero() });
+                // Of unit length whatever was given for a rotation.
+                search.from(unit(&times(&frame, &along)).1 * speed, 1)
             })
         })
     }
