@@ -50,10 +50,13 @@ impl<S: Scalar> Guard<S> {
             if gamma < nearest {
                 (nearest, frame) = (gamma, obstacle.spec().rotation);
             }
+            if !obstacle.is_near(gamma, speed * dt + next.skin) {
+                continue;
+            }
             // Neither can be full: they have the table's own capacity.
             if obstacle.is_round_wall() {
                 let _ = search.walls.push(obstacle);
-            } else if obstacle.is_near(gamma, speed * dt + next.skin) {
+            } else {
                 let _ = search.others.push((*index, *reach));
             }
         }
@@ -71,9 +74,9 @@ impl<S: Scalar> Guard<S> {
 struct Search<'a, S: Scalar, const D: usize, const CAP: usize> {
     guard: &'a Guard<S>,
     next: &'a Next<'a, S, D, CAP>,
-    /// Walls whose free space is convex.
+    /// Of what a step may reach, walls whose free space is convex.
     walls: heapless::Vec<&'a Obstacle<S, D>, CAP>,
-    /// What else a step may reach: places in the table, with how far to look.
+    /// And all else: places in the table, with how far to look.
     others: heapless::Vec<(usize, S), CAP>,
     /// Of those walls from all places so far; each has all of the free space on one side.
     tangents: heapless::Vec<HalfSpace<S, D>, TANGENTS>,
