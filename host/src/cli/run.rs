@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use pliant_protocol::message::{Mode, StopReason};
 use serde_json::json;
 
 use super::{Finished, finite, print_json, progress};
@@ -72,11 +73,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         bar.set_position((done * 1000.0) as u64);
         bar.set_message(format!("start {} of {starts}: {time:.1} s, {distance:.3} m to go", i + 1));
     });
-    let runs = runs.map_err(|error| match error {
-        BridgeError::Capacity { .. } | BridgeError::Refused { .. } => error.into(),
-        // The device was there and failed at what it was asked to run.
-        _ => Error::failed(error.to_string()),
-    })?;
+    let runs = runs.map_err(|error| broken_off(error, args.stepped))?;
     bar.finish_and_clear();
     let board = session.info().board.clone();
     drop(session);
@@ -96,6 +93,24 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     }
     Ok(if runs.reached() && runs.untouched() && drawn { Outcome::Success } else { Outcome::Failed })
 }
+
+/// What is said of a run that did not come to its end.
+fn broken_off(error: BridgeError, stepped: bool) -> Error {
+    let held_up = matches!(
+        error,
+        BridgeError::Silent { .. } | BridgeError::Stopped { mode: Mode::Stopped(StopReason::LinkLost), .. }
+    );
+    match error {
+        BridgeError::Capacity { .. } | BridgeError::Refused { .. } => error.into(),
+        // The device was there and failed at what it was asked to run.
+        _ if held_up && !stepped => Error::failed(error.to_string()).with_help(IN_TIME),
+        _ => Error::failed(error.to_string()),
+    }
+}
+
+/// What can be done where real time was too fast for this machine.
+const IN_TIME: &str = "in real time host and device have a millisecond for a tick, and a busy machine keeps both from it, an emulated device most of all: \
+                       run it with less beside it, or with `--stepped`, where the device waits for the robot's state before each tick";
 
 /// The figure of a run, as SVG and PNG; the path of the PNG.
 fn draw(scene: &Scene, runs: &Runs) -> Result<PathBuf, Error> {
@@ -175,5 +190,28 @@ fn print_table(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Opt
     }
     if let Some(figure) = figure {
         say!("  figure: {} (and .svg beside it)", figure.display());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_is_too_slow_for_real_time_is_told_of_stepped() {
+        let stopped = |reason| BridgeError::Stopped { device: "qemu".into(), mode: Mode::Stopped(reason) };
+        let silent = || BridgeError::Silent { device: "qemu".into(), seconds: 3.0 };
+        let help = |error, stepped| {
+            let error = broken_off(error, stepped);
+            assert_eq!(error.exit(), 1);
+            error.to_json()["error"]["help"].as_str().map(String::from)
+        };
+        for error in [stopped(StopReason::LinkLost), silent()] {
+            assert!(help(error, false).is_some_and(|help| help.contains("`--stepped`")));
+        }
+        // It would not help there.
+        assert_eq!(help(stopped(StopReason::LinkLost), true), None);
+        assert_eq!(help(silent(), true), None);
+        assert_eq!(help(stopped(StopReason::Fault), false), None);
     }
 }
