@@ -340,14 +340,21 @@ impl<'a> Panel<'a> {
         labels.keep_free(star, 8.5);
         self.scene.starts().iter().for_each(|p| labels.keep_free(pixel(p), 5.0));
         for s in &self.seen {
-            labels.avoid(ring(&s.core.ring, axes));
+            let ring = || ring(&s.core.ring, axes).into_iter();
+            labels.avoid(ring().chain(ring().next()));
+        }
+        for p in self.scene.scan().iter().flat_map(|scan| scan.points()) {
+            let (at, half) = (pixel(p), Vector2::new(2.0, 0.0));
+            labels.avoid([at - half, at + half]);
         }
         for c in &self.clearances {
             let (from, to) = (pixel(&c.robot), pixel(&c.surface));
             svg.line([from, to], CLEARANCE_CASING);
             svg.line([from, to], CLEARANCE);
             svg.circle(to, 2.2, CLEARANCE_END);
+            labels.avoid([from, to]);
             labels.keep_free(nalgebra::center(&from, &to), 1.0);
+            labels.mark(nalgebra::center(&from, &to));
         }
         svg.star(star, 8.5, ATTRACTOR);
         for t in self.trajectories {
