@@ -107,13 +107,21 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.is_within(gamma, gauge - S::one())
     }
 
-    /// Is x outside, and the surface farther than `distance` (m), also where it comes near twice as fast as at x?
+    /// Is the surface farther than `distance` (m) from x, which is outside, also where it comes near twice as fast as at x?
     #[cold]
     #[inline(never)]
     pub(crate) fn is_farther(&self, x: &Vector<S, D>, distance: S) -> bool {
-        // What rounding does to scaled coordinates of a large body.
-        let coarse = S::EPSILON * S::from_f64(8.0) / self.hard.iter().fold(S::MAX, |m, hard| m.min(*hard));
-        self.tangent(x).is_some_and(|(_, gap)| gap >= distance + distance + coarse)
+        let u = self.scaled(x);
+        let longest = S::one() / self.hard.iter().fold(S::MAX, |m, hard| m.min(*hard));
+        // What rounding does to scaled coordinates of a large body: all are equally coarse in fixed point.
+        let size = if S::FLOATS { u.iter().fold(S::zero(), |m, u| m.max(u.abs())) } else { S::one() };
+        let least = distance + distance + S::EPSILON * S::from_f64(8.0) * size * longest;
+        // Beside a corner the nearest edge's tangent says less than there is.
+        let gap = match self.body.distance(&self.spec.shape, &u) {
+            Some(gap) => Some(gap * longest),
+            None => self.tangent(x).map(|(_, gap)| gap),
+        };
+        gap.is_some_and(|gap| gap >= least)
     }
 
     /// Is all of the surface farther than `reach` (m) from a point inside with this Gamma?

@@ -297,6 +297,14 @@ impl<S: Scalar, const D: usize> Body<S, D> {
         if let Self::Polygon { pieces, .. } = self { Some(pieces) } else { None }
     }
 
+    /// Of a polygon, how far u is from it, or of a wall, from what is outside.
+    pub fn distance(&self, shape: &Shape<S, D>, u: &Vector<S, D>) -> Option<S> {
+        match (self, shape) {
+            (Self::Polygon { scale, .. }, Shape::Polygon(polygon)) => Some(polygon.at_scale(*scale).distance(u)),
+            _ => None,
+        }
+    }
+
     /// Half-spaces that keep a point out of the body, or inside it as a wall; see [`Surface::keep_out`].
     pub fn keep_out(&self, shape: &Shape<S, D>, at: &Place<'_, S, D>, keep: impl FnMut(Vector<S, D>, S)) {
         match (self, shape) {

@@ -162,6 +162,18 @@ impl<S: Scalar> Scaled<'_, S> {
         self.edges().fold(S::MAX, |least, e| least.min(S::one() / S::norm(&e.normal)))
     }
 
+    /// How far u is from the nearest edge.
+    pub fn distance<const D: usize>(&self, u: &Vector<S, D>) -> S {
+        let u = plane(u);
+        self.pairs().fold(S::MAX, |least, (from, to)| {
+            let (length, ahead) = S::unit(sub(to, from));
+            let corner = sub(u, from);
+            let along = dot(corner, ahead);
+            let here = if along > S::zero() && along < length { cross(ahead, corner).abs() } else { S::norm(&corner) };
+            least.min(here)
+        })
+    }
+
     /// Every corner, with the one before it.
     fn pairs(&self) -> impl Iterator<Item = ([S; 2], [S; 2])> {
         let scale = self.scale;
