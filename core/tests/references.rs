@@ -126,7 +126,7 @@ fn walls_keep_their_own_reference_points() {
 #[test]
 fn no_reference_point_is_lost_in_clusters_of_polygons() {
     let r = &mut random(2);
-    let kind = Kind { obstacles: 6, speed: 0.0, walls: false, scans: false, odd: true };
+    let kind = Kind { obstacles: 6, speed: 0.0, walls: false, scans: false, odd: true, thin: false };
     let (mut polygons, mut common, mut flagged) = (0, 0, 0);
     for n in 0..share(500) {
         let mut c = controller(V::new(2.0, 0.0));
@@ -167,7 +167,7 @@ fn no_reference_point_is_lost_in_clusters_of_polygons() {
 fn what_shrinks_keeps_its_reference_point_inside() {
     let r = &mut random(4);
     for n in 0..share(500) {
-        let kind = Kind { obstacles: 1, speed: 0.0, walls: false, scans: false, odd: true };
+        let kind = Kind { obstacles: 1, speed: 0.0, walls: false, scans: false, odd: true, thin: false };
         let Some(o) = world::obstacle::<f64, 2>(r, &kind) else { continue };
         let wall = r.random_bool(0.2) && !matches!(o.spec().shape, Shape::Polygon(_));
         let direction = V::from_fn(|_, _| r.random_range(-1.0..1.0));

@@ -6,8 +6,9 @@ mod world;
 
 use pliant_core::scalar::Fixed;
 use pliant_core::{RobotState, Scalar, Status};
+use rand::Rng;
 use world::judge::{Asked, clear_velocity};
-use world::{Kind, World, gamma, is_long, room, share, world};
+use world::{Kind, World, gamma, is_long, random, room, share, world};
 
 /// Ticks of one world.
 const TICKS: u64 = 250;
@@ -21,19 +22,35 @@ enum Place {
     Among(Kind),
     /// In a room with little space, that moves and shrinks up to so fast, m/s.
     Room(f64),
+    /// The same as among, with another time step in each world: from a fifth of a millisecond to five.
+    AtAnyStep(Kind),
 }
 
 impl Place {
     fn world<S: Scalar, const D: usize>(&self, seed: u64) -> Option<World<S, D>> {
         match self {
-            Place::Among(kind) => world(seed, kind),
+            Place::Among(kind) | Place::AtAnyStep(kind) => world(seed, kind),
             Place::Room(speed) => room::world(seed, *speed),
         }
     }
 
     fn moves(&self) -> bool {
-        let (Place::Among(Kind { speed, .. }) | Place::Room(speed)) = self;
+        let (Place::Among(Kind { speed, .. }) | Place::AtAnyStep(Kind { speed, .. }) | Place::Room(speed)) = self;
         *speed > 0.0
+    }
+
+    /// Can a step end beyond a body? Then there are ways out that no side of it which is seen on the way leads to, and some are missed.
+    fn may_miss(&self) -> bool {
+        matches!(self, Place::AtAnyStep(_))
+    }
+
+    /// The time step, s.
+    fn step(&self, seed: u64) -> f64 {
+        match self {
+            // A multiple of 2^-20 s: every number type has it.
+            Place::AtAnyStep(_) => (200.0 * 25f64.powf(random(!seed).random_range(0.0..1.0))).round() / 1_048_576.0,
+            _ => 1e-3,
+        }
     }
 }
 
@@ -48,11 +65,14 @@ struct Tally {
     may_stand_guarded: u64,
     /// Infeasible ticks where all that is near asks for one half-space each: those are judged by a search.
     judged: u64,
+    /// Infeasible ticks with a way left that was not found, among bodies thinner than a step.
+    missed: u64,
 }
 
 /// One world, from tick to tick.
 fn drive<S: Scalar, const D: usize>(place: Place, seed: u64, tally: &mut Tally) {
-    let (dt, tick) = (S::from_f64(0.001), 0.001);
+    let tick = place.step(seed);
+    let dt = S::from_f64(tick);
     let Some(World { mut controller, start: mut x }) = place.world::<S, D>(seed) else { return };
     let speed = controller.settings().limits.speed.to_f64();
     let mut afterwards = 0;
@@ -82,8 +102,9 @@ fn drive<S: Scalar, const D: usize>(place: Place, seed: u64, tally: &mut Tally) 
             assert!(!(infeasible && asked.may_stand), "seed {seed} tick {n}: infeasible, and standing still is not");
             if infeasible {
                 let found = clear_velocity(&controller, &state, tick);
+                tally.missed += u64::from(found.is_some());
                 assert!(
-                    found.is_none(),
+                    found.is_none() || place.may_miss(),
                     "seed {seed} tick {n}: {found:?} leads outside from {:?}, {command:?}",
                     state.position()
                 );
@@ -91,7 +112,10 @@ fn drive<S: Scalar, const D: usize>(place: Place, seed: u64, tally: &mut Tally) 
             if infeasible && !asked.more {
                 tally.judged += 1;
                 let found = asked.search();
-                assert!(found.is_none(), "seed {seed} tick {n}: {found:?} is allowed at {x}, {command:?}");
+                assert!(
+                    found.is_none() || place.may_miss(),
+                    "seed {seed} tick {n}: {found:?} is allowed at {x}, {command:?}"
+                );
             }
         }
         if !place.moves() && command.status & (Status::EXTRAPOLATED | Status::HELD) == Status::empty() {
@@ -106,7 +130,7 @@ fn drive<S: Scalar, const D: usize>(place: Place, seed: u64, tally: &mut Tally) 
 fn campaign<S: Scalar, const D: usize>(place: Place, seed: u64) {
     let mut tally = Tally::default();
     let mut seed = seed << 32;
-    let wanted = share(6);
+    let wanted = share(8);
     while tally.ticks < wanted {
         seed += 1;
         drive::<S, D>(place, seed, &mut tally);
@@ -114,13 +138,17 @@ fn campaign<S: Scalar, const D: usize>(place: Place, seed: u64) {
     println!("{D}-D {place:?}: {tally:?}");
     if is_long() {
         assert!(tally.guarded > 0 && tally.may_stand_guarded * 500 > tally.ticks, "nothing was tried: {tally:?}");
+        assert!(tally.missed <= 2 + tally.ticks / 200_000, "too often missed: {tally:?}");
         assert!(!place.moves() || tally.judged * 5000 > tally.ticks, "nothing was tried: {tally:?}");
     }
 }
 
-const STILL: Place = Place::Among(Kind { obstacles: 30, speed: 0.0, walls: true, scans: true, odd: true });
-const MOVING: Place = Place::Among(Kind { obstacles: 30, speed: 2.0, walls: true, scans: true, odd: true });
+const STILL: Place = Place::Among(Kind { obstacles: 30, speed: 0.0, walls: true, scans: true, odd: true, thin: false });
+const MOVING: Place =
+    Place::Among(Kind { obstacles: 30, speed: 2.0, walls: true, scans: true, odd: true, thin: false });
 const ROOM: Place = Place::Room(2.0);
+const THIN: Place =
+    Place::AtAnyStep(Kind { obstacles: 30, speed: 2.0, walls: true, scans: true, odd: true, thin: true });
 
 macro_rules! campaigns {
     ($($name:ident: $scalar:ty, $d:literal, $place:expr, $seed:literal;)+) => {
@@ -146,6 +174,12 @@ campaigns! {
     room_3d_f32: f32, 3, ROOM, 16;
     room_2d_fixed: Fixed, 2, ROOM, 17;
     room_3d_fixed: Fixed, 3, ROOM, 18;
+    thin_2d_f64: f64, 2, THIN, 19;
+    thin_3d_f64: f64, 3, THIN, 20;
+    thin_2d_f32: f32, 2, THIN, 21;
+    thin_3d_f32: f32, 3, THIN, 22;
+    thin_2d_fixed: Fixed, 2, THIN, 23;
+    thin_3d_fixed: Fixed, 3, THIN, 24;
 }
 
 /// Worlds in which a velocity is found by one part of the search alone: from an end of the step, by room rather than by no violation, by tangents of the places

@@ -84,11 +84,14 @@ impl<S: Scalar, const D: usize> Asked<S, D> {
                     undisturbed &= !inside && share * d > 2.0 * step + skin + rounding.distance;
                     more |= inside || share * d - 2.0 * step - skin < step;
                 }
-                _ => {
-                    if let Some((normal, gap)) = supporting(o, state.position()) {
-                        undisturbed &= side(normal, gap);
+                _ => match supporting(o, state.position()) {
+                    Some((normal, gap)) => undisturbed &= side(normal, gap),
+                    // How far it is cannot be told; if it is no nearer than all of it, a step does not reach it.
+                    None => {
+                        let outer = numbers(&o.spec().shape.extent().component_mul(&o.spec().margin)).norm() * 2.0;
+                        more |= (x - numbers(&o.spec().center)).norm() < outer + 2.0 * step;
                     }
-                }
+                },
             }
         }
         for p in controller.table().scan().points() {
@@ -193,14 +196,13 @@ fn power<S: Scalar, const D: usize>(o: &Obstacle<S, D>) -> f64 {
 }
 
 /// The supporting half-space of a convex core and how far x is from it, m: with the gauge lambda = Gamma^(1/2p) the normal is along its gradient, and
-/// the distance (lambda - 1)/|grad lambda|. Nothing far away; no one side at the very centre.
+/// the distance (lambda - 1)/|grad lambda|. Nothing where Gamma is all that can be told; no one side at the very centre.
 fn supporting<S: Scalar, const D: usize>(o: &Obstacle<S, D>, x: &Vector<S, D>) -> Option<(Vector<f64, D>, f64)> {
     let p = power(o);
     let gamma = o.gamma(x).to_f64();
     let lambda = gamma.powf(0.5 / p);
-    // 2.3 times the 45 mm of the thinnest body are farther than 2 mm a step can come too near at a rate of approach of 0.02; and in fixed point an
-    // obstacle matters up to Gamma = 1000.
-    if lambda > 3.3 || gamma >= S::FAR.to_f64() {
+    // What is farther is all the same in fixed point.
+    if gamma >= S::FAR.to_f64() {
         return None;
     }
     let gradient = numbers(&o.gradient(x));

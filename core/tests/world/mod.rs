@@ -129,6 +129,8 @@ pub struct Kind {
     pub scans: bool,
     /// Polygons with corners at any angles, walls of up to tens of metres, and bodies from 1 cm to half a metre?
     pub odd: bool,
+    /// Mostly bodies down to a millimetre thin, and up to 500 times as long?
+    pub thin: bool,
 }
 
 pub fn obstacle<S: Scalar, const D: usize>(r: &mut Random, kind: &Kind) -> Option<Obstacle<S, D>> {
@@ -140,7 +142,7 @@ pub fn obstacle<S: Scalar, const D: usize>(r: &mut Random, kind: &Kind) -> Optio
     let velocity: Vector<S, D> = vector(&within(r, fast / 1.75));
     // Mostly as large as each other, some small, some large.
     let size = if !kind.odd || r.random_bool(0.8) { 0.15 } else { 10f64.powf(r.random_range(-1.5..-0.4)) };
-    let shape = shape(r, size, kind.odd);
+    let shape = if kind.thin && r.random_bool(0.7) { room::narrow(r) } else { shape(r, size, kind.odd) };
     let margin = if let Shape::Polygon(_) = shape { [margin[0]; 3] } else { margin };
     let reference = vector(&[0.01, -0.005, 0.005].map(|x| if r.random_bool(0.3) { x } else { 0.0 }));
     let growth = if r.random_bool(0.3) { r.random_range(-0.1..0.1f64) * fast } else { 0.0 };

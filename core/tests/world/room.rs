@@ -70,7 +70,7 @@ pub fn world<S: Scalar, const D: usize>(seed: u64, speed: f64) -> Option<World<S
         center + (room.surface(&vector(&within(r, 1.0))) - center) * S::from_f64(far)
     };
     controller.upsert(1000, room.clone(), S::zero()).unwrap();
-    let kind = Kind { obstacles: 1, speed, walls: false, scans: false, odd: true };
+    let kind = Kind { obstacles: 1, speed, walls: false, scans: false, odd: true, thin: false };
     for id in 0..r.random_range(0..3u16) * u16::from(r.random_bool(0.5)) {
         if let Some(o) = obstacle::<S, D>(r, &kind) {
             let moved = ObstacleSpec { center: place(r), ..o.spec().clone() };

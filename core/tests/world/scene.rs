@@ -4,7 +4,7 @@ use super::{Kind, Random, obstacle, vector, within};
 use pliant_core::{Controller, Motion, Obstacle, Scalar, Settings, Vector};
 use rand::Rng;
 
-pub const MOVING: Kind = Kind { obstacles: 8, speed: 0.5, walls: false, scans: false, odd: true };
+pub const MOVING: Kind = Kind { obstacles: 8, speed: 0.5, walls: false, scans: false, odd: true, thin: false };
 pub const STILL: Kind = Kind { speed: 0.0, ..MOVING };
 
 /// Places in one world: making a world costs as much as many looks at it.
