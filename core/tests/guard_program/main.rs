@@ -5,6 +5,7 @@ mod brute;
 mod sample;
 
 use pliant_core::guard::{HalfSpace, Solution, nearest};
+use pliant_core::scalar::Fixed;
 use pliant_core::{Scalar, Vector};
 use proptest::prelude::*;
 use sample::{Problem, Random};
@@ -17,13 +18,18 @@ fn exact<S: Scalar, const D: usize>(v: &Vector<S, D>) -> Vector<f64, D> {
     v.map(Scalar::to_f64)
 }
 
+/// Of numbers of the size of the speed, over that: in fixed point all are equally coarse.
+fn rounding<S: Scalar>(speed: f64) -> f64 {
+    S::EPSILON.to_f64() / if S::FLOATS { 1.0 } else { speed }
+}
+
 /// Every promise of one answer, for the problem scaled to a speed of one.
 fn check<S: Scalar, const D: usize>(p: &Problem<S, D>) {
     let found = solve(p);
     let speed = p.speed.to_f64();
     let (wanted, u) = (exact(&p.wanted) / speed, exact(&found.velocity) / speed);
     let sides: Vec<brute::Side<D>> = p.sides.iter().map(|h| (exact(&h.normal), h.offset.to_f64() / speed)).collect();
-    let eps = S::EPSILON.to_f64();
+    let eps = rounding::<S>(speed);
     let violation = found.violation.to_f64() / speed;
     let margin = 68.0 * eps * (1.0 + violation) + 1e-11;
     let worst = brute::worst(&sides, &u);
@@ -61,7 +67,7 @@ fn check_orders<S: Scalar, const D: usize>(p: &Problem<S, D>, random: &mut Rando
     random.shuffle(&mut sides);
     let other = solve(&Problem { sides, ..p.clone() });
     let unit = p.speed.to_f64();
-    let margin = 68.0 * S::EPSILON.to_f64() * (1.0 + one.violation.to_f64() / unit) + 1e-11;
+    let margin = 68.0 * rounding::<S>(unit) * (1.0 + one.violation.to_f64() / unit) + 1e-11;
     let difference = (one.violation - other.violation).to_f64().abs() / unit;
     assert!(difference <= margin, "{one:?} {other:?} {p:?}");
     if p.blunt {
@@ -89,6 +95,12 @@ fn few_in_the_plane() {
 fn few_in_space() {
     campaign::<f64, 3>(3, 100_000, 5);
     campaign::<f32, 3>(4, 100_000, 5);
+}
+
+#[test]
+fn few_in_fixed_point() {
+    campaign::<Fixed, 2>(10, 100_000, 6);
+    campaign::<Fixed, 3>(11, 100_000, 5);
 }
 
 #[test]

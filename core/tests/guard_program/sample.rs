@@ -56,7 +56,9 @@ impl Random {
 
     /// Of one to `most` half-spaces; every number rounded to `S`.
     pub fn problem<S: Scalar, const D: usize>(&mut self, most: usize) -> Problem<S, D> {
-        let speed = [0.5, 0.5, 1.0, 3.0, 0.02, 1e-6][self.below(6)];
+        // Within the range of fixed point, and not so slow that nothing is left of it there.
+        let (slowest, farthest) = if S::FLOATS { (1e-6, 1000.0) } else { (0.1, 300.0) };
+        let speed = [0.5, 0.5, 1.0, 3.0, 0.02, 1e-6f64][self.below(6)].max(slowest);
         let wanted = match self.below(6) {
             0 => Vector::zeros(),
             1 => self.unit() * speed,
@@ -84,7 +86,7 @@ impl Random {
                 // As far as the ball reaches, and a little farther.
                 4 => speed * (1.0 + self.between(-1.0, 1.0) * spread),
                 7 => self.between(-3.0, 3.0) * speed,
-                8 => self.between(-1.0, 1000.0) * speed,
+                8 => self.between(-1.0, farthest) * speed,
                 _ => n.dot(&middle) - self.between(-0.1, 1.0) * spread * speed,
             };
             sides.push((n, b));
