@@ -135,7 +135,7 @@ fn from_inside_a_polygon_it_is_driven_out() {
 }
 
 /// Past the star and the bracket of `scenes/polygon-star.toml` to its attractor, which draws at 1/s: the least speed, as a share of what the attractor and
-/// the limit ask for, and the largest change of the velocity from one sample to the next, m/s.
+/// the limit ask for, and the largest change of the velocity in two samples, m/s: round a corner it turns within that, and when the first falls is chance.
 fn past_the_star(start: V) -> (f64, f64) {
     const MOST: f64 = 0.4;
     let goal = V::new(0.42, 0.0);
@@ -164,15 +164,15 @@ fn past_the_star(start: V) -> (f64, f64) {
             ObstacleSpec { shape, center, rotation: rotation::planar(angle), soft_ratio, ..ObstacleSpec::default() };
         c.upsert(id, Obstacle::new(spec).unwrap(), 0.0).unwrap();
     }
-    let (mut x, mut before) = (start, None);
+    let (mut x, mut before) = (start, [None; 2]);
     let (mut slowest, mut jump, mut guarded) = (f64::MAX, 0.0_f64, 0);
     while (goal - x).norm() > 0.05 {
         let command = c.tick(&RobotState::new(x).unwrap(), DT);
         assert!(command.gamma > 1.0 && !command.status.contains(Status::INFEASIBLE), "{x:?} {command:?}");
         guarded += u32::from(command.status.contains(Status::GUARDED));
         slowest = slowest.min(command.velocity.norm() / (goal - x).norm().min(MOST));
-        jump = before.map_or(jump, |before: V| jump.max((command.velocity - before).norm()));
-        before = Some(command.velocity);
+        jump = before[0].map_or(jump, |before: V| jump.max((command.velocity - before).norm()));
+        before = [before[1], Some(command.velocity)];
         x += command.velocity * DT;
     }
     assert!(guarded > 20, "the guard has no say: {guarded}");
@@ -184,6 +184,6 @@ fn past_corners_and_cuts_it_is_neither_slowed_down_nor_let_go_in_a_jump() {
     for start in [V::new(-0.15, -0.30), V::new(-0.42, 0.02)] {
         let (slowest, jump) = past_the_star(start);
         println!("from {start:?}: {slowest} of the speed, {jump} m/s");
-        assert!(slowest > 0.55 && jump < 0.2, "from {start:?}: {slowest} of the speed, {jump} m/s");
+        assert!(slowest > 0.55 && jump < 0.3, "from {start:?}: {slowest} of the speed, {jump} m/s");
     }
 }

@@ -61,22 +61,28 @@ impl Outline {
     fn rate_of(&self, i: usize, u: Corner) -> f64 {
         let n = self.0.len();
         let (v, w, m) = (self.at(i), self.at(i + 1), self.normal(i));
+        let (own, unit) = (1.0 / length(m), scaled(m));
         let area = cross(v, w);
         // The ray turns by |dx|/|u| at most, so its place t on the edge, at p = u/(m.u), changes by |p| |dx| / ((m.u) area).
         let gauge = dot(m, u).max(1.0);
         let farthest = length(v).max(length(w));
         let place = farthest / (gauge * area);
-        let ends = [(i + n - 1, v, w), (i + 1, w, v)];
-        ends.into_iter().fold(0.0, |most, (neighbour, corner, opposite)| {
-            let other = self.normal(neighbour);
-            let fall = 1.0 - dot(other, opposite);
-            let band = if fall > 4.0 { 0.8 / fall } else { 0.2 };
-            // Half of the difference over the band. As m.v = 1 of both at their corner v, what changes is across v, and the angle by that over |v| |m|^2.
-            let change = length([other[0] - m[0], other[1] - m[1]]) * 0.5 / band * place;
-            let shortest = shortest(m, other);
-            f64::max(most, change / (length(corner) * shortest * shortest))
+        let ends = [(i + n - 1, w), (i + 1, v)];
+        ends.into_iter().fold(0.0, |most, (neighbour, opposite)| {
+            let far = 1.0 / length(self.normal(neighbour));
+            let other = scaled(self.normal(neighbour));
+            let (fall, least) = (far - dot(other, opposite), 0.8 * far.min(own));
+            let band = if fall * 0.2 > least { least / fall } else { 0.2 };
+            // Half of the way from one to the other over the band; of (1 - a) m + a o, whose length is never less than the shortest, across it.
+            let change = cross(unit, other).abs() * 0.5 / band * place;
+            f64::max(most, change / shortest(unit, other).powi(2))
         })
     }
+}
+
+fn scaled(a: Corner) -> Corner {
+    let size = length(a);
+    a.map(|x| x / size)
 }
 
 /// Of all (1 - a) m + a o, 0 <= a <= 1/2, the least length.

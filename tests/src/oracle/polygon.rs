@@ -8,9 +8,9 @@ use super::error::OracleError;
 use super::geometry::{angle_between, length, plane_cross, vector};
 use super::shape::turned_right;
 
-/// Share of an edge over which its slope passes into that of the neighbour.
+/// Share of an edge over which its normal passes into that of the neighbour.
 const BLEND: f64 = 0.2;
-/// What the neighbour's gauge may fall by along that share.
+/// By how much of the nearer line's distance from the origin the neighbour's line may come nearer along that share.
 const FALL: f64 = 0.8;
 /// The gauge of every edge up to which the whole is in sight.
 pub(super) const SIGHT: f64 = 0.8;
@@ -70,14 +70,14 @@ impl Star {
         self.slopes.iter().map(|slope| slope.dot(y)).fold(0.0, f64::max)
     }
 
-    /// Over which share of the i-th edge the slope of the j-th passes into its own.
+    /// Over which share of the i-th edge the normal of the j-th passes into its own.
     fn band(&self, i: usize, j: usize) -> f64 {
         let n = self.corners.len();
-        let ends = [&self.corners[i], &self.corners[(i + 1) % n]];
-        // Of both ends one is the corner between them, where it is 1.
-        let gauges = ends.map(|end| self.slopes[j].dot(end));
-        let far = if (j + 1) % n == i { gauges[1] } else { gauges[0] };
-        if far < 1.0 { BLEND.min(FALL / (1.0 - far)) } else { BLEND }
+        let [own, other] = [i, j].map(|edge| 1.0 / length(&self.slopes[edge]));
+        // Of both ends one is the corner between them, where the other line is; from the second it is this far behind.
+        let second = if (j + 1) % n == i { &self.corners[(i + 1) % n] } else { &self.corners[i] };
+        let behind = other * (1.0 - self.slopes[j].dot(second));
+        if behind > 0.0 { BLEND.min(FALL * own.min(other) / behind) } else { BLEND }
     }
 
     pub(super) fn at(&self, y: &DVector<f64>) -> StarPoint {
@@ -101,8 +101,10 @@ impl Star {
         let (last, next) = ((i + n - 1) % n, (i + 1) % n);
         let before = 0.5 * (1.0 - t / self.band(i, last)).max(0.0);
         let after = 0.5 * (1.0 - (1.0 - t) / self.band(i, next)).max(0.0);
-        let blended =
-            &self.slopes[i] * (1.0 - before - after) + &self.slopes[last] * before + &self.slopes[next] * after;
+        let normal = |edge: usize| &self.slopes[edge] / length(&self.slopes[edge]);
+        let blended = normal(i) * (1.0 - before - after) + normal(last) * before + normal(next) * after;
+        // As steep as a gauge is, whose slope along its ray is the gauge itself.
+        let blended = &blended * (gauge / blended.dot(y));
         StarPoint { gauge, blended }
     }
 }

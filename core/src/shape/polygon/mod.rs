@@ -15,7 +15,8 @@ const FAR_OFF: f64 = 8.0;
 pub const MAX_VERTICES: usize = 12;
 /// The share of an edge, at each end, over which the normal turns towards that of the neighbour.
 const BLEND: f64 = 0.2;
-/// By how much of the neighbour's gauge along that share it may fall at most: the further the neighbour turns away, the shorter the share.
+/// How far the neighbour's line may come nearer along that share, of the distance of the nearer of the two from the origin: the further the
+/// neighbour turns away, the shorter the share.
 const FALL: f64 = 0.8;
 /// A reference point is behind every edge's line by at least a fifth of the origin's distance from it. FALL/8, what
 /// the blend may take of that, is less.
@@ -24,9 +25,9 @@ pub(crate) const SIGHT: f64 = 0.8;
 /// A polygon, star-shaped about the origin: [`Polygon::new`] checks the number of corners, an obstacle the rest.
 ///
 /// Between two corners v and w a point is u = alpha v + beta w, and its gauge is alpha + beta. The gradient of the
-/// gauge is the edge's normal (scaled), which would jump at a corner; near one it is blended with that of the next
-/// edge, so that the velocity is continuous. Where that edge turns away steeply it is so only very near, for the
-/// normal must lead away from every reference point there may be.
+/// gauge is along the edge's normal, which would jump at a corner; near one it is blended with that of the next edge, so that the
+/// velocity is continuous: at the corner it halves the angle between the two, so along either edge the flow goes on the way it went. Where that edge
+/// turns away steeply it is so only very near, for the normal must lead away from every reference point there may be.
 ///
 /// ```
 /// use pliant_core::{Obstacle, ObstacleSpec, Vector, shape::{Polygon, Shape}};
@@ -39,12 +40,14 @@ pub struct Polygon<S> {
     vertices: heapless::Vec<[S; 2], MAX_VERTICES>,
 }
 
-/// An edge from `from` to `to`, which is `along`; `normal.z = 1` along it.
+/// An edge from `from` to `to`, which is `along`; `normal.z = 1` along it. `across` is the unit normal, `distance` that of its line from the origin.
 struct Edge<S> {
     from: [S; 2],
     to: [S; 2],
     along: [S; 2],
     normal: [S; 2],
+    across: [S; 2],
+    distance: S,
 }
 
 impl<S: Scalar> Edge<S> {
@@ -56,14 +59,23 @@ impl<S: Scalar> Edge<S> {
         let distance = dot(across, from).min(dot(across, to));
         // |normal| = 1/distance of the edge's line.
         let normal = across.map(|n| n / distance);
-        (cross(from, to) > S::zero() && distance > S::zero()).then_some(Self { from, to, along, normal })
+        (cross(from, to) > S::zero() && distance > S::zero()).then_some(Self {
+            from,
+            to,
+            along,
+            normal,
+            across,
+            distance,
+        })
     }
 
-    /// Its share in the normal of a neighbour, at this share of that one's length from the corner between them;
-    /// `opposite` is the neighbour's other corner. A half at the corner, fading over a band.
-    fn share(&self, away: S, opposite: [S; 2]) -> S {
-        let (band, fall) = (S::from_f64(BLEND), S::one() - dot(self.normal, opposite));
-        let band = if fall * band > S::from_f64(FALL) { S::from_f64(FALL) / fall } else { band };
+    /// Its share in the normal of a neighbour, at this share of that one's length from the corner between them; `opposite` is the neighbour's other
+    /// corner, `distance` that of its line. A half at the corner, fading over a band.
+    fn share(&self, away: S, opposite: [S; 2], distance: S) -> S {
+        let band = S::from_f64(BLEND);
+        let (fall, most) =
+            (self.distance - dot(self.across, opposite), S::from_f64(FALL) * self.distance.min(distance));
+        let band = if fall * band > most { most / fall } else { band };
         ((band - away) / band).max(S::zero()).min(S::one()) * S::from_f64(0.5)
     }
 }
@@ -241,15 +253,15 @@ impl<S: Scalar, const D: usize> Surface<S, D> for InPieces<'_, S> {
         // Where on the edge, 0 to 1.
         let along = beta / gauge;
         let corners = [(along, polygon.before(end), edge.to), (S::one() - along, polygon.after(end), edge.from)];
-        let mut normal = edge.normal;
+        let mut normal = edge.across;
         for (away, neighbour, opposite) in corners {
             // Far from both corners no neighbour counts.
             if away < S::from_f64(BLEND)
                 && let Some(neighbour) = polygon.ending(neighbour)
             {
-                let share = neighbour.share(away, opposite);
+                let share = neighbour.share(away, opposite, edge.distance);
                 let own = S::one() - share;
-                normal = [0, 1].map(|i| normal[i] * own + neighbour.normal[i] * share);
+                normal = [0, 1].map(|i| normal[i] * own + neighbour.across[i] * share);
             }
         }
         let gauge = gauge * unit;
