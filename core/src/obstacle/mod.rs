@@ -231,7 +231,12 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         // gamma is homogeneous of degree 2p: its gradient times u is 2p gamma.
         let length = S::from_f64(2.0 * f64::from(self.body.power())) * gamma / along;
         let gradient = times(&self.spec.rotation, &(direction.component_mul(&self.hard) * length));
-        if self.spec.wall { -gradient / (gamma * gamma) } else { gradient }
+        if !self.spec.wall {
+            return gradient;
+        }
+        // So near the centre that the square of gamma is nothing, it is the centre.
+        let inwards = -gradient / (gamma * gamma);
+        if inwards.iter().all(|x| x.is_finite()) { inwards } else { Vector::zeros() }
     }
 
     /// The point of the hard surface (safety factors, growth and ageing included) that the ray from the centre along
