@@ -120,7 +120,9 @@ impl<S: Scalar> Guard<S> {
     ) -> Solution<S, D> {
         let Next { x, wanted, speed, dt, .. } = *next;
         // The skin is no core: outside of that, by what rounding may do and as much again, is all that has to be.
-        let (bare, skin) = (rounding(x, BARE), rounding(x, BARE + BARE));
+        let bare = rounding(x, BARE);
+        let (twice, grain) = (bare + bare, next.table.grain());
+        let skin = if grain > twice { grain } else { twice };
         let landing = x + best.velocity * dt;
         // A surface that cannot be kept away from in time alone cannot be kept away from along with others.
         if !(fastest - (next.skin - skin) / dt > speed) {
@@ -130,7 +132,7 @@ impl<S: Scalar> Guard<S> {
             let mut seen = HalfSpaces::new(speed);
             self.look(next, &there, &mut seen);
             // In fixed point what half-spaces of thin walls say may be off by more than the skin.
-            let outside = |u: &Vector<S, D>| next.table.is_round() || next.is_clear(&(x + u * dt), rounding(x, 1.0));
+            let outside = |u: &Vector<S, D>| grain >= S::zero() || next.is_clear(&(x + u * dt), rounding(x, 1.0));
             if let Some(velocity) = seen.allowed(wanted).filter(outside) {
                 return Solution::found(velocity, wanted);
             }

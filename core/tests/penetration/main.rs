@@ -8,7 +8,7 @@ use pliant_core::scalar::Fixed;
 use pliant_core::{RobotState, Scalar, Status};
 use rand::Rng;
 use world::judge::{Asked, clear_velocity};
-use world::{Kind, World, gamma, is_long, random, room, share, world};
+use world::{Kind, World, balls, gamma, is_long, random, room, share, world};
 
 /// Ticks of one world.
 const TICKS: u64 = 250;
@@ -22,6 +22,8 @@ enum Place {
     Among(Kind),
     /// In a room with little space, that moves and shrinks up to so fast, m/s.
     Room(f64),
+    /// Among ellipsoids alone that close in.
+    Balls,
     /// The same as among, with another time step in each world: from a fifth of a millisecond to five.
     AtAnyStep(Kind),
 }
@@ -31,17 +33,27 @@ impl Place {
         match self {
             Place::Among(kind) | Place::AtAnyStep(kind) => world(seed, kind),
             Place::Room(speed) => room::world(seed, *speed),
+            Place::Balls => balls::world(seed),
         }
     }
 
     fn moves(&self) -> bool {
-        let (Place::Among(Kind { speed, .. }) | Place::AtAnyStep(Kind { speed, .. }) | Place::Room(speed)) = self;
-        *speed > 0.0
+        !matches!(self, Place::Among(Kind { speed: 0.0, .. }))
     }
 
-    /// Can a step end beyond a body? Then there are ways out that no side of it which is seen on the way leads to, and some are missed.
+    /// May a way out be missed? Where a step can end beyond a body, there are some to which no side of it leads that is seen on the way; among ellipsoids alone
+    /// that are not thin it is looked for from two places only.
     fn may_miss(&self) -> bool {
-        matches!(self, Place::AtAnyStep(_))
+        matches!(self, Place::AtAnyStep(_) | Place::Balls)
+    }
+
+    /// And is it in not too many?
+    fn rarely_misses(&self, tally: &Tally) -> bool {
+        match self {
+            Place::AtAnyStep(_) => tally.missed <= 2 + tally.ticks / 200_000,
+            Place::Balls => tally.missed * 1000 <= 500 + tally.infeasible,
+            _ => tally.missed == 0,
+        }
     }
 
     /// The time step, s.
@@ -65,7 +77,7 @@ struct Tally {
     may_stand_guarded: u64,
     /// Infeasible ticks where all that is near asks for one half-space each: those are judged by a search.
     judged: u64,
-    /// Infeasible ticks with a way left that was not found, among bodies thinner than a step.
+    /// Infeasible ticks with a way left that was not found.
     missed: u64,
 }
 
@@ -101,20 +113,16 @@ fn drive<S: Scalar, const D: usize>(place: Place, seed: u64, tally: &mut Tally) 
             tally.may_stand_guarded += u64::from(asked.may_stand && guarded);
             assert!(!(infeasible && asked.may_stand), "seed {seed} tick {n}: infeasible, and standing still is not");
             if infeasible {
-                let found = clear_velocity(&controller, &state, tick);
-                tally.missed += u64::from(found.is_some());
+                let mut way = clear_velocity(&controller, &state, tick);
+                if !asked.more {
+                    tally.judged += 1;
+                    way = way.or_else(|| asked.search());
+                }
+                tally.missed += u64::from(way.is_some());
+                let from = state.position();
                 assert!(
-                    found.is_none() || place.may_miss(),
-                    "seed {seed} tick {n}: {found:?} leads outside from {:?}, {command:?}",
-                    state.position()
-                );
-            }
-            if infeasible && !asked.more {
-                tally.judged += 1;
-                let found = asked.search();
-                assert!(
-                    found.is_none() || place.may_miss(),
-                    "seed {seed} tick {n}: {found:?} is allowed at {x}, {command:?}"
+                    way.is_none() || place.may_miss(),
+                    "seed {seed} tick {n}: {way:?} leads out from {from:?}, {command:?}"
                 );
             }
         }
@@ -130,7 +138,7 @@ fn drive<S: Scalar, const D: usize>(place: Place, seed: u64, tally: &mut Tally) 
 fn campaign<S: Scalar, const D: usize>(place: Place, seed: u64) {
     let mut tally = Tally::default();
     let mut seed = seed << 32;
-    let wanted = share(8);
+    let wanted = share(10);
     while tally.ticks < wanted {
         seed += 1;
         drive::<S, D>(place, seed, &mut tally);
@@ -138,7 +146,7 @@ fn campaign<S: Scalar, const D: usize>(place: Place, seed: u64) {
     println!("{D}-D {place:?}: {tally:?}");
     if is_long() {
         assert!(tally.guarded > 0 && tally.may_stand_guarded * 500 > tally.ticks, "nothing was tried: {tally:?}");
-        assert!(tally.missed <= 2 + tally.ticks / 200_000, "too often missed: {tally:?}");
+        assert!(place.rarely_misses(&tally), "too often missed: {tally:?}");
         assert!(!place.moves() || tally.judged * 5000 > tally.ticks, "nothing was tried: {tally:?}");
     }
 }
@@ -174,6 +182,12 @@ campaigns! {
     room_3d_f32: f32, 3, ROOM, 16;
     room_2d_fixed: Fixed, 2, ROOM, 17;
     room_3d_fixed: Fixed, 3, ROOM, 18;
+    balls_2d_f64: f64, 2, Place::Balls, 25;
+    balls_3d_f64: f64, 3, Place::Balls, 26;
+    balls_2d_f32: f32, 2, Place::Balls, 27;
+    balls_3d_f32: f32, 3, Place::Balls, 28;
+    balls_2d_fixed: Fixed, 2, Place::Balls, 29;
+    balls_3d_fixed: Fixed, 3, Place::Balls, 30;
     thin_2d_f64: f64, 2, THIN, 19;
     thin_3d_f64: f64, 3, THIN, 20;
     thin_2d_f32: f32, 2, THIN, 21;

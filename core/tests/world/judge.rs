@@ -85,7 +85,12 @@ impl<S: Scalar, const D: usize> Asked<S, D> {
                     more |= inside || share * d - 2.0 * step - skin < step;
                 }
                 _ => match supporting(o, state.position()) {
-                    Some((normal, gap)) => undisturbed &= side(normal, gap),
+                    Some((normal, gap)) => {
+                        // The coordinates of what is larger than a metre are as coarse, and it is kept off by as much more.
+                        let size = numbers(&o.spec().shape.extent()).amax();
+                        let coarse = if size > 1.0 { 24.0 * eps * size } else { 0.0 };
+                        undisturbed &= side(normal, gap - coarse);
+                    }
                     // How far it is cannot be told; if it is no nearer than all of it, a step does not reach it.
                     None => {
                         let outer = numbers(&o.spec().shape.extent().component_mul(&o.spec().margin)).norm() * 2.0;

@@ -9,6 +9,7 @@ use pliant_core::{
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+pub mod balls;
 pub mod judge;
 pub mod room;
 pub mod scene;
