@@ -64,6 +64,24 @@ pub enum SettingsError {
     Guard,
 }
 
+impl core::fmt::Display for SettingsError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Gain => "gain is not from 0 to 10 m/s",
+            Self::Steering => "steering has cos^2 + sin^2 further than 1e-3 from 1, or a beta that is not from 0 to 10",
+            Self::Speed => "limits.speed is not above 0 and at most 100 m/s",
+            Self::Acceleration => "limits.acceleration is neither none nor above 0 and at most 10^4 m/s^2",
+            Self::Deceleration => "limits.deceleration is not above 0 and at most 10^4 m/s^2",
+            Self::Ageing => {
+                "ageing has a time not from 0 to 3600 s, a hold below time_to_live, or a growth not from 0 to 10 m/s"
+            }
+            Self::Guard => "guard.approach is not above 0 and at most 1",
+        })
+    }
+}
+
+impl core::error::Error for SettingsError {}
+
 impl<S: Scalar> Settings<S> {
     /// Checks every range. A controller takes settings as they are: those that come from outside are to be checked
     /// first.

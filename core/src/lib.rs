@@ -24,6 +24,8 @@ pub use controller::{Command, Controller, RobotState, Settings, SettingsError, S
 pub use ds::{Certified, Component, LpvDs, Motion};
 pub use guard::Guard;
 pub use limits::Limits;
+/// Its vectors and matrices are this crate's: [`Vector`] and [`Matrix`] are short names for them.
+pub use nalgebra;
 pub use obstacle::{Obstacle, ObstacleError, ObstacleSpec};
 pub use scalar::{Fixed, Scalar};
 pub use scan::{Scan, ScanError};

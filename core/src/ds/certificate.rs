@@ -39,6 +39,19 @@ pub enum CertificateError {
     Component(usize),
 }
 
+impl core::fmt::Display for CertificateError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Lyapunov => f.write_str("lyapunov is not symmetric positive definite"),
+            Self::Component(k) => {
+                write!(f, "components[{k}].a breaks the certificate: A'P + PA is not negative definite")
+            }
+        }
+    }
+}
+
+impl core::error::Error for CertificateError {}
+
 impl<S: Scalar, const D: usize> LpvDs<S, D> {
     /// Checks P = P' > 0 and A_k' P + P A_k < 0 for every k, in this model's own precision (Figueroa & Billard, CoRL
     /// 2018; eqs. 1-5 of Chen et al.).

@@ -79,6 +79,26 @@ pub enum ModelField {
     A,
 }
 
+impl core::fmt::Display for ModelError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        if let Some(k) = self.component {
+            write!(f, "components[{k}].")?;
+        }
+        f.write_str(match self.field {
+            ModelField::Attractor => "attractor is not finite, or beyond +-1000 m",
+            ModelField::Gain => "gain is not above 0 and at most 1000 1/s",
+            ModelField::Lyapunov => "lyapunov has an entry that is not finite, or beyond +-1e6",
+            ModelField::Components => "components are not 1 to 16",
+            ModelField::Weight => "log_weight is not finite, or beyond +-1e6",
+            ModelField::Mean => "mean is not finite, or beyond +-1000 m",
+            ModelField::Whitening => "whitening has an entry that is not finite, or beyond +-1e6 1/m",
+            ModelField::A => "a has an entry that is not finite, or beyond +-1e4 1/s",
+        })
+    }
+}
+
+impl core::error::Error for ModelError {}
+
 impl ModelError {
     pub(crate) fn of(field: ModelField) -> Self {
         Self { field, component: None }

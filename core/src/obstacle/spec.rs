@@ -92,6 +92,34 @@ pub enum ObstacleError {
     Growth,
 }
 
+impl core::fmt::Display for ObstacleError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Center => "center is not finite, or beyond +-1000 m",
+            Self::Rotation => "rotation is not a right-handed rotation matrix, orthonormal to 1e-3",
+            Self::Dimension => {
+                "shape is of the other dimension: polygons are for the plane, cylinders and capsules for space"
+            }
+            Self::Axes => "shape has a length that is not from 0.1 mm (in fixed point 2 mm) to 1000 m",
+            Self::Curvature => "shape has a curvature that is not from 1 to 8",
+            Self::Rounding => {
+                "shape has a rounding below 0.1 mm (in fixed point 2 mm), or larger than the body has room for"
+            }
+            Self::Vertices => {
+                "shape is not a polygon once round its origin, counter-clockwise and seen whole from there"
+            }
+            Self::SoftRatio => "soft_ratio is not from 1 to 100, or of a polygon not the same along both axes",
+            Self::Margin => "margin is not from 1 to 100, or of a polygon not the same along both axes",
+            Self::Reference => "reference is not inside the shape as given, or does not see the whole of the polygon",
+            Self::Velocity => "velocity is not finite, or beyond +-100 m/s",
+            Self::Spin => "spin is not skew, not finite, or beyond +-100 rad/s",
+            Self::Growth => "growth is not finite, or beyond +-100 m/s",
+        })
+    }
+}
+
+impl core::error::Error for ObstacleError {}
+
 impl<S: Scalar, const D: usize> ObstacleSpec<S, D> {
     /// Checks every field but the reference point, which needs the body.
     pub(super) fn check(&self) -> Result<(), ObstacleError> {

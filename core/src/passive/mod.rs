@@ -109,6 +109,25 @@ pub enum PassiveError {
     Work,
 }
 
+impl core::fmt::Display for PassiveError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::LambdaAlong => "lambda_along is not from 0.01 to 1000 N s/m",
+            Self::LambdaAcross => "lambda_across is not from 0.01 to 1000 N s/m",
+            Self::Blend => "blend is not from 0.001 to 10 m/s",
+            Self::Share => "share is not from 0 to 1",
+            Self::Energy => "the tank's energy is not from 0 J to its capacity",
+            Self::Capacity => "the tank's capacity is not above 0 and at most 1000 J",
+            Self::RobotVelocity => "robot_velocity is not finite, or its force leaves the range of numbers",
+            Self::Wanted => "wanted is not finite, or its force leaves the range of numbers",
+            Self::TimeStep => "dt is not above 0 and at most 0.1 s",
+            Self::Work => "the work of the step is more than 1000 J, or leaves the range of numbers",
+        })
+    }
+}
+
+impl core::error::Error for PassiveError {}
+
 /// What one step asks of the robot, and what it did to the tank: s' = s + filled - drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interaction<S: Scalar, const D: usize> {

@@ -46,6 +46,18 @@ pub enum ScanError {
     Radius,
 }
 
+impl core::fmt::Display for ScanError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Points => f.write_str("points are more than 128"),
+            Self::Point(k) => write!(f, "points[{k}] is not finite, or beyond +-1000 m"),
+            Self::Radius => f.write_str("radius is not from 0.1 mm (in fixed point 2 mm) to 100 m"),
+        }
+    }
+}
+
+impl core::error::Error for ScanError {}
+
 impl<S: Scalar, const D: usize> Default for Scan<S, D> {
     /// No points.
     fn default() -> Self {

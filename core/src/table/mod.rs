@@ -96,6 +96,14 @@ fn nearer<S: Scalar, T>(one: (S, T), best: (S, T)) -> (S, T) {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TableFull;
 
+impl core::fmt::Display for TableFull {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("the table has no room for another obstacle")
+    }
+}
+
+impl core::error::Error for TableFull {}
+
 /// At most `CAP` (1 to 64; more does not compile) obstacles by their identifiers, and one scan. The [module](self)
 /// says how they age and go together.
 ///
