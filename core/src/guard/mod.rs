@@ -48,7 +48,7 @@ mod search;
 
 use core::cmp::Ordering;
 
-use program::allowed;
+use program::{allowed, least, nearest_of_least};
 pub use program::{HalfSpace, Solution, nearest};
 
 use crate::obstacle::Outlook;
@@ -101,49 +101,53 @@ impl<S: Scalar> Guard<S> {
         table: &Table<S, D, CAP>,
         around: &Surroundings<S, D, CAP>,
     ) -> Solution<S, D> {
-        let next = Next { x, wanted, speed, dt, skin: skin(x), table, around };
+        let next = Next { x, wanted, speed, dt, skin: skin(x), table, near: &around.near };
         let mut seen = HalfSpaces::new(speed);
-        let here = View { at: x, step: speed * dt, approach: self.approach, skin: next.skin, near: &around.near };
+        let here = View { at: x, step: speed * dt, approach: self.approach, skin: next.skin, near: next.near };
         self.look(&next, &here, &mut seen);
-        let best = seen.nearest(wanted);
-        if best.feasible { best } else { self.otherwise(&next, best, seen.fastest) }
+        let best = seen.least(wanted);
+        if best.feasible { best } else { self.otherwise(&next, &mut seen, best) }
     }
 
-    /// What is left where not every half-space can be fulfilled, `best` violates them least, and `fastest` is the largest offset, m/s.
+    /// What is left where not every half-space of those `seen` can be fulfilled, and `best` violates them least.
     #[cold]
     #[inline(never)]
     fn otherwise<const D: usize, const CAP: usize>(
         &self,
         next: &Next<'_, S, D, CAP>,
+        seen: &mut HalfSpaces<S, D>,
         best: Solution<S, D>,
-        fastest: S,
     ) -> Solution<S, D> {
+        let mut near = heapless::Vec::new();
+        if next.may_lead_out(&best.velocity, &mut near)
+            && let Some(velocity) = self.another(&Next { near: &near, ..*next }, &best.velocity)
+        {
+            return Solution::found(velocity, next.wanted);
+        }
+        seen.nearest_of_least(next.wanted, best)
+    }
+
+    /// A velocity whose next sample is outside of every core, though half-spaces from x leave none; `best` violates them least.
+    fn another<const D: usize, const CAP: usize>(
+        &self,
+        next: &Next<'_, S, D, CAP>,
+        best: &Vector<S, D>,
+    ) -> Option<Vector<S, D>> {
         let Next { x, wanted, speed, dt, .. } = *next;
         // The skin is no core: outside of that, by what rounding may do and as much again, is all that has to be.
         let bare = rounding(x, BARE);
-        let (twice, grain) = (bare + bare, next.table.grain());
-        let skin = if grain > twice { grain } else { twice };
-        let landing = x + best.velocity * dt;
-        // A surface that cannot be kept away from in time alone cannot be kept away from along with others.
-        if !(fastest - (next.skin - skin) / dt > speed) {
-            // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
-            let step = speed * dt;
-            let there = View { at: &landing, step: step + step, approach: S::one(), skin, near: &next.around.near };
-            let mut seen = HalfSpaces::new(speed);
-            self.look(next, &there, &mut seen);
-            // In fixed point what half-spaces of thin walls say may be off by more than the skin.
-            let outside = |u: &Vector<S, D>| grain >= S::zero() || next.is_clear(&(x + u * dt), rounding(x, 1.0));
-            if let Some(velocity) = seen.allowed(wanted).filter(outside) {
-                return Solution::found(velocity, wanted);
-            }
-        }
-        if next.is_clear(&landing, bare) {
-            return Solution::found(best.velocity, wanted);
-        }
-        if next.is_clear(x, S::zero()) {
-            return Solution::found(Vector::zeros(), wanted);
-        }
-        self.search(next).map_or(best, |velocity| Solution::found(velocity, wanted))
+        // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
+        let (landing, step) = (x + best * dt, speed * dt);
+        let there = View { at: &landing, step: step + step, approach: S::one(), skin: bare + bare, near: next.near };
+        let mut seen = HalfSpaces::new(speed);
+        self.look(next, &there, &mut seen);
+        // In fixed point what half-spaces of thin walls say may be off by more than the skin.
+        let outside = |u: &Vector<S, D>| next.is_clear(&(x + u * dt), rounding(x, 1.0));
+        let allowed = seen.allowed(wanted).filter(outside);
+        allowed
+            .or_else(|| next.is_clear(&landing, bare).then_some(*best))
+            .or_else(|| next.is_clear(x, S::zero()).then(Vector::zeros))
+            .or_else(|| self.search(next))
     }
 
     /// The half-spaces that are seen from one place, into `all`.
@@ -199,14 +203,35 @@ struct Next<'a, S: Scalar, const D: usize, const CAP: usize> {
     skin: S,
     /// What is there at the next sample.
     table: &'a Table<S, D, CAP>,
-    /// What was seen from x at this one.
-    around: &'a Surroundings<S, D, CAP>,
+    /// What of it may be reached: places in the table, each with how far to look for its surface, m.
+    near: &'a [(usize, S)],
 }
 
 impl<S: Scalar, const D: usize, const CAP: usize> Next<'_, S, D, CAP> {
     /// The obstacles that may be reached.
     fn near(&self) -> impl Iterator<Item = &Obstacle<S, D>> {
-        self.around.near.iter().filter_map(|(index, _)| self.table.at(*index))
+        self.near.iter().filter_map(|(index, _)| self.table.at(*index))
+    }
+
+    /// May a step lead out of every core? Not if it is known that they hold every place there is within it. `reached` gets those of
+    /// [`near`](Next::near) that it may reach; `likely` is the velocity that may best lead out, m/s.
+    fn may_lead_out(&self, likely: &Vector<S, D>, reached: &mut heapless::Vec<(usize, S), CAP>) -> bool {
+        let Next { x, speed, dt, skin, table, .. } = *self;
+        let step = speed * dt;
+        let mut out = HalfSpaces::new(speed);
+        let mut leads = true;
+        for (index, reach) in self.near {
+            let Some((normal, depth)) = table.at(*index).and_then(|o| o.engulfs(x, step, skin)) else { continue };
+            if depth > step {
+                return false;
+            }
+            let offset = depth / dt;
+            leads &= normal.dot(likely) > offset;
+            out.add(HalfSpace { normal, offset });
+            // Cannot be full: it has the table's own capacity.
+            let _ = reached.push((*index, *reach));
+        }
+        leads || out.allowed(likely).is_some()
     }
 
     /// Is a place outside of every core, farther than `rounding`, m?
@@ -239,13 +264,11 @@ struct View<'a, S: Scalar, const D: usize> {
 struct HalfSpaces<S: Scalar, const D: usize> {
     all: heapless::Vec<HalfSpace<S, D>, CAPACITY>,
     speed: S,
-    /// The largest offset, m/s.
-    fastest: S,
 }
 
 impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
     fn new(speed: S) -> Self {
-        Self { all: heapless::Vec::new(), speed, fastest: S::zero() }
+        Self { all: heapless::Vec::new(), speed }
     }
 
     /// Puts one in; where there is no room, in the place of the loosest, which no velocity slower than its offset violates.
@@ -253,7 +276,6 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
         if !(new.offset > -self.speed) {
             return;
         }
-        self.fastest = self.fastest.max(new.offset);
         let Err(mut new) = self.all.push(new) else { return };
         if let Some(loosest) =
             self.all.iter_mut().min_by(|a, b| a.offset.partial_cmp(&b.offset).unwrap_or(Ordering::Equal))
@@ -264,9 +286,13 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
         self.speed = -new.offset;
     }
 
-    fn nearest(&mut self, wanted: &Vector<S, D>) -> Solution<S, D> {
-        let solution = nearest(wanted, &mut self.all, self.speed);
+    fn least(&mut self, wanted: &Vector<S, D>) -> Solution<S, D> {
+        let solution = least(wanted, &mut self.all, self.speed);
         Solution { feasible: solution.feasible && self.speed >= S::zero(), ..solution }
+    }
+
+    fn nearest_of_least(&mut self, wanted: &Vector<S, D>, best: Solution<S, D>) -> Solution<S, D> {
+        nearest_of_least(wanted, &mut self.all, self.speed.max(S::zero()), best)
     }
 
     fn allowed(&mut self, wanted: &Vector<S, D>) -> Option<Vector<S, D>> {
@@ -318,7 +344,7 @@ mod tests {
             });
             let mut seen = HalfSpaces::new(2.0);
             all.iter().for_each(|h| seen.add(*h));
-            let found = seen.nearest(&Vector::<f64, 2>::new(-2.0, 0.0));
+            let found = seen.least(&Vector::<f64, 2>::new(-2.0, 0.0));
             assert!(found.feasible);
             assert!(found.velocity.x < -1.2, "more is kept than need be: {found:?}");
             for h in &all {

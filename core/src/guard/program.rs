@@ -78,26 +78,53 @@ pub fn nearest<S: Scalar, const D: usize>(
     half_spaces: &mut [HalfSpace<S, D>],
     speed: S,
 ) -> Solution<S, D> {
-    let speed = if speed > S::zero() { speed } else { S::zero() };
-    let (goal, start) = within_ball(wanted, speed);
-    let solution = |velocity: Vector<S, D>, violation: S, feasible: bool| Solution {
-        velocity,
-        changed: velocity != *wanted,
-        violation: if feasible { S::zero() } else { violation },
-        feasible,
-    };
-    let Some(half_spaces) = violated(&start, half_spaces, speed) else {
-        return solution(start, S::zero(), true);
-    };
-    if let Some(velocity) = within_all(goal, start, half_spaces, speed) {
-        return solution(velocity, S::zero(), true);
-    }
-    let velocity = least_violation(goal, start, half_spaces, speed);
-    let violation = worst(half_spaces, &velocity);
-    // What is missed by no more than rounding is not missed.
-    solution(velocity, violation, violation <= margin(speed))
+    let best = least(wanted, half_spaces, speed);
+    if best.feasible { best } else { nearest_of_least(wanted, half_spaces, speed, best) }
 }
 
+/// The same, but where there is none any velocity of those with the least violation.
+pub(super) fn least<S: Scalar, const D: usize>(
+    wanted: &Vector<S, D>,
+    half_spaces: &mut [HalfSpace<S, D>],
+    speed: S,
+) -> Solution<S, D> {
+    let speed = if speed > S::zero() { speed } else { S::zero() };
+    let (goal, start) = within_ball(wanted, speed);
+    let Some(half_spaces) = violated(&start, half_spaces, speed) else {
+        return Solution::found(start, wanted);
+    };
+    if let Some(velocity) = within_all(goal, start, half_spaces, speed) {
+        return Solution::found(velocity, wanted);
+    }
+    let velocity = least_violation(start, half_spaces, speed);
+    let violation = worst(half_spaces, &velocity);
+    let best = Solution { velocity, changed: velocity != *wanted, violation, feasible: false };
+    // What is missed by no more than rounding is not missed.
+    if violation > margin(speed) {
+        return best;
+    }
+    let nearer = nearest_of_least(wanted, half_spaces, speed, best);
+    Solution::found(if nearer.violation <= margin(speed) { nearer.velocity } else { velocity }, wanted)
+}
+
+/// Of all velocities that violate no half-space by more than this one, which violates them least, the nearest to the wanted one.
+pub(super) fn nearest_of_least<S: Scalar, const D: usize>(
+    wanted: &Vector<S, D>,
+    half_spaces: &mut [HalfSpace<S, D>],
+    speed: S,
+    best: Solution<S, D>,
+) -> Solution<S, D> {
+    let (goal, start) = within_ball(wanted, speed);
+    let half_spaces = with_sides(half_spaces);
+    let tolerance = coarsest(half_spaces, speed);
+    let most = best.violation + tolerance;
+    let nearer = Programme::nearest(goal, start, speed, most, tolerance).solve(half_spaces);
+    let violated = |velocity: Vector<S, D>| {
+        let violation = worst(half_spaces, &velocity);
+        Solution { velocity, changed: velocity != *wanted, violation, feasible: false }
+    };
+    nearer.map(violated).filter(|nearer| nearer.violation <= most + tolerance).unwrap_or(best)
+}
 /// The same, and nothing where there is none.
 pub(super) fn allowed<S: Scalar, const D: usize>(
     wanted: &Vector<S, D>,
@@ -128,6 +155,11 @@ fn within_all<S: Scalar, const D: usize>(
     half_spaces: &mut [HalfSpace<S, D>],
     speed: S,
 ) -> Option<Vector<S, D>> {
+    // What asks for more than the speed is fulfilled by none.
+    let most = speed + margin(speed);
+    if half_spaces.iter().any(|h| h.offset > most) {
+        return None;
+    }
     let velocity = Programme::nearest(goal, start, speed, S::zero(), rounding(speed)).solve(half_spaces)?;
     (worst(half_spaces, &velocity) <= margin(speed)).then_some(velocity)
 }
@@ -203,15 +235,18 @@ fn worst_first<S: Scalar, const D: usize>(
     Some(*first)
 }
 
-/// Of the velocities in the ball whose largest violation is least, the one nearest to the goal.
+/// What rounding may do to any violation there may be: whatever the least one is, t, no offset is above speed + t.
+fn coarsest<S: Scalar, const D: usize>(half_spaces: &[HalfSpace<S, D>], speed: S) -> S {
+    rounding(half_spaces.iter().fold(speed, |m, h| m.max(h.offset)))
+}
+
+/// A velocity in the ball whose largest violation is least.
 fn least_violation<S: Scalar, const D: usize>(
-    goal: Vector<S, D>,
     start: Vector<S, D>,
     half_spaces: &mut [HalfSpace<S, D>],
     speed: S,
 ) -> Vector<S, D> {
-    // Whatever t is, no offset is above speed + t.
-    let tolerance = rounding(half_spaces.iter().fold(speed, |m, h| m.max(h.offset)));
+    let tolerance = coarsest(half_spaces, speed);
     let mut velocity = start;
     let mut least = S::zero();
     for active in 0..half_spaces.len() {
@@ -222,11 +257,7 @@ fn least_violation<S: Scalar, const D: usize>(
         velocity = better;
         least = h.violation(&velocity).max(S::zero());
     }
-    let least = worst(half_spaces, &velocity) + tolerance;
-    match Programme::nearest(goal, start, speed, least, tolerance).solve(half_spaces) {
-        Some(nearer) if worst(half_spaces, &nearer) <= least + tolerance => nearer,
-        _ => velocity,
-    }
+    velocity
 }
 
 /// What makes a velocity the best.

@@ -50,13 +50,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         // Scaled, so that squares stay within range; only the direction counts.
         let t = u / largest;
         let size = norm(&t);
-        // In fixed point a short axis' reciprocal has no square.
-        let (normal, unit) = if S::FLOATS {
-            (t.component_mul(&self.hard), one)
-        } else {
-            let shortest = one / self.slimmest;
-            (t.zip_map(&self.hard, |t, inverse| t * (inverse * shortest)), shortest)
-        };
+        let (normal, unit) = self.steepened(&t);
         let inverse = one / norm(&normal);
         keep(
             times(&self.spec.rotation, &(normal * inverse)),
@@ -64,11 +58,43 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         );
     }
 
-    /// Is it an ellipsoid with p = 1, no wall, and at most three times as long as wide?
-    pub(crate) fn is_round(&self) -> bool {
-        let least = self.hard.iter().fold(S::MAX, |m, hard| m.min(*hard));
-        // And what rounding makes of three.
-        self.plain && self.hard.iter().all(|hard| *hard <= least * S::from_f64(3.001))
+    /// None if its surface is farther from x than `step` (m), and a `skin` (m); or else what of the displacements from x that are no longer than the step is sure
+    /// to end in the hard core: all with n.delta <= depth (n of unit length, world's frame; depth in m, below -step where nothing is). Of an ellipsoid with p = 1
+    ///
+    /// ```text
+    /// Gamma(x + delta) <= Gamma(x) + grad Gamma(x).delta + (|delta|/shortest semi-axis)^2
+    /// ```
+    pub(crate) fn engulfs(&self, x: &Vector<S, D>, step: S, skin: S) -> Option<(Vector<S, D>, S)> {
+        let u = self.scaled(x);
+        let gamma = self.level(&u).0;
+        if !self.is_near(gamma, step + skin) {
+            return None;
+        }
+        let bend = step * self.slimmest;
+        // In fixed point the reciprocal of what is very thin is out of range.
+        if !(self.plain && bend < S::one()) {
+            let twice = step + step;
+            let depth = if self.is_deeper(gamma, step) { twice } else { -twice };
+            return Some((self.spec.rotation.column(0).into_owned(), depth));
+        }
+        let (normal, unit) = self.steepened(&u);
+        // At the centre it has no direction, but all the more depth.
+        let inverse = S::one() / norm(&normal);
+        let half = S::from_f64(0.5);
+        let depth = (S::one() - gamma - bend * bend) * half * unit * inverse;
+        Some((times(&self.spec.rotation, &(normal * inverse)), depth))
+    }
+
+    /// t diag(hard), along the gradient of Gamma where t is along u, in units of which as many are a metre as `unit` says.
+    #[inline(always)]
+    fn steepened(&self, t: &Vector<S, D>) -> (Vector<S, D>, S) {
+        let one = S::one();
+        if S::FLOATS {
+            return (t.component_mul(&self.hard), one);
+        }
+        // In fixed point a short axis' reciprocal has no square.
+        let shortest = one / self.slimmest;
+        (t.zip_map(&self.hard, |t, inverse| t * (inverse * shortest)), shortest)
     }
 
     /// Is it a wall whose free space is convex?

@@ -125,8 +125,6 @@ pub struct Table<S: Scalar, const D: usize, const CAP: usize> {
     entries: heapless::Vec<Entry<S, D>, CAP>,
     clusters: Clusters<CAP>,
     scan: Scan<S, D>,
-    /// What rounding may do to the distance from the largest obstacle, m; below zero unless there are only ellipsoids that are not thin, and no range points.
-    grain: S,
     revision: u32,
 }
 
@@ -143,7 +141,6 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             entries: heapless::Vec::new(),
             clusters: Clusters::new(),
             scan: Scan::default(),
-            grain: S::zero(),
             revision: 0,
         }
     }
@@ -179,7 +176,6 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             }
         };
         self.clusters.changed(index, &mut self.entries);
-        self.sort_out();
         self.revision = self.revision.wrapping_add(1);
         Ok(())
     }
@@ -192,7 +188,6 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         self.entries.swap_remove(index);
         let last = self.entries.len();
         self.clusters.removed(index, last, &mut self.entries);
-        self.sort_out();
         self.revision = self.revision.wrapping_add(1);
         true
     }
@@ -202,7 +197,6 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     pub fn set_scan(&mut self, mut scan: Scan<S, D>, age: S, ageing: &Ageing<S>) {
         scan.carry(age, ageing);
         self.scan = scan;
-        self.sort_out();
         self.revision = self.revision.wrapping_add(1);
     }
 
@@ -211,7 +205,6 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         self.entries.clear();
         self.clusters = Clusters::new();
         self.scan = Scan::default();
-        self.sort_out();
         self.revision = self.revision.wrapping_add(1);
     }
 
@@ -350,24 +343,6 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         }
         (around.gamma, around.nearest) = (gamma, nearest.map(Entry::id));
         (around.velocity, around.unusable) = modulation.finish(of_obstacles, points.as_ref());
-    }
-
-    /// What rounding may do to the distance from the largest obstacle, m; below zero unless it [`is_round`](Self::is_round).
-    pub(crate) fn grain(&self) -> S {
-        self.grain
-    }
-
-    /// Are there no obstacles but ellipsoids that are not thin, and no range points?
-    pub(crate) fn is_round(&self) -> bool {
-        self.grain >= S::zero()
-    }
-
-    fn sort_out(&mut self) {
-        let round = self.scan.points().is_empty() && self.entries.iter().all(|e| e.obstacle.is_round());
-        // In fixed point the surface counts as nearer by all of it.
-        let unit = if S::FLOATS { S::EPSILON * S::from_f64(16.0) } else { S::zero() };
-        let largest = || self.entries.iter().fold(S::zero(), |m, e| m.max(e.obstacle.outer()));
-        self.grain = if round { largest() * unit } else { -S::one() };
     }
 
     /// The obstacle at this place in the table.
