@@ -15,8 +15,8 @@
 //! inequality and |u| <= speed the one nearest to what was wanted is driven. One half-space a core is enough to be
 //! outside and more than is needed: where none fulfils them all, those that hold the cores as seen from where the
 //! least violation leads are tried, without alpha and, but for rounding, without the skin; then a few other places
-//! of the next sample, walls by their tangents. Where that fails too, the velocity that violates the worst inequality
-//! least is driven, and the status says so.
+//! of the next sample, walls by their tangents. Where that fails too, or where it is known that the cores hold every
+//! place within a step, the velocity that violates the worst inequality least is driven, and the status says so.
 //!
 //! What is exact: superellipsoids, boxes, cylinders, capsules, points of a scan, and polygons, by their convex
 //! pieces. A wall's free space is convex but for polygons; a half-space would let a step end outside of its curve, so
@@ -48,8 +48,8 @@ mod search;
 
 use core::cmp::Ordering;
 
-use program::{allowed, least, nearest_of_least};
 pub use program::{HalfSpace, Solution, nearest};
+use program::{allowed, least, nearest_of_least};
 
 use crate::obstacle::Outlook;
 use crate::surroundings::Surroundings;

@@ -1,7 +1,7 @@
 use super::*;
 use crate::scalar::lanes::{LANES, Lanes};
 use crate::shape::{Polygon, Shape};
-use crate::{Fixed, Matrix, rotation};
+use crate::{Fixed, Matrix, norm, rotation};
 use proptest::prelude::*;
 
 fn spec() -> ObstacleSpec<f64, 2> {
@@ -164,5 +164,55 @@ fn a_polygon_far_away_is_far_away_in_fixed_point_too() {
             let least = (far / 0.11 * (far / 0.11)).min(1000.0);
             assert!(gamma.to_f64() >= 0.9 * least, "{gamma} at {far} m, turned by {turn}");
         }
+    }
+}
+
+/// Displacements said to end in the core do, and a surface said to be out of reach is. How many of those tried were said to end in it.
+fn engulfed<S: Scalar>(rounding: f64) -> (u32, u32) {
+    use rand::{Rng, SeedableRng};
+    let r = &mut rand_chacha::ChaCha8Rng::seed_from_u64(5);
+    let (mut tried, mut held) = (0, 0);
+    for _ in 0..20_000 {
+        let size = 10f64.powf(r.random_range(-3.0..-0.5));
+        let axes = Vector::<f64, 2>::new(size, size * 10f64.powf(r.random_range(-1.0..0.0)));
+        let spec = ObstacleSpec {
+            center: Vector::<f64, 2>::new(r.random_range(-1.0..1.0), r.random_range(-1.0..1.0)).map(S::from_f64),
+            rotation: rotation::planar(r.random_range(0.0..6.3)).map(S::from_f64),
+            shape: Shape::Ellipsoid { axes: axes.map(S::from_f64), curvature: r.random_range(1..3) },
+            ..ObstacleSpec::default()
+        };
+        let Ok(o) = Obstacle::new(spec) else { continue };
+        let step = 10f64.powf(r.random_range(-4.0..-2.0));
+        let way = Vector::<f64, 2>::new(r.random_range(-1.0..1.0), r.random_range(-1.0..1.0)).map(S::from_f64);
+        let surface = o.surface(&way);
+        let off = (surface - o.spec().center) / norm(&(surface - o.spec().center));
+        let off = off * S::from_f64(step * r.random_range(-3.0..2.0));
+        let x = if r.random_bool(0.02) { o.spec().center } else { surface + off };
+        let seen = o.engulfs(&x, S::from_f64(step), S::zero());
+        for _ in 0..20 {
+            let (angle, share): (f64, f64) = (r.random_range(0.0..6.3), r.random_range(0.0f64..1.0).sqrt());
+            let delta = Vector::<f64, 2>::new(angle.cos(), angle.sin()) * (step * share);
+            let to = x + delta.map(S::from_f64);
+            let (before, after) = (o.gamma(&x).to_f64(), o.gamma(&to).to_f64());
+            tried += 1;
+            // The steepest there is: what rounding of a place may do to the gauge.
+            let slack = rounding * o.steepest().to_f64();
+            match seen {
+                None => assert!((before - 1.0).signum() == (after - 1.0).signum() || (after - 1.0).abs() < slack),
+                Some((n, depth)) if depth > S::from_f64(step) || n.dot(&delta.map(S::from_f64)) < depth => {
+                    held += 1;
+                    assert!(after < 1.0 + slack, "{o:?} {x} {delta}: {after}");
+                }
+                Some(_) => {}
+            }
+        }
+    }
+    (tried, held)
+}
+
+#[test]
+fn what_is_said_to_end_in_a_core_does() {
+    for (tried, held) in [engulfed::<f64>(1e-12), engulfed::<f32>(1e-5), engulfed::<Fixed>(3e-5)] {
+        assert!(held * 4 > tried && tried > 200_000, "{held} of {tried}");
     }
 }

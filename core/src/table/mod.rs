@@ -137,12 +137,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Default for Table<S, D, CAP> {
 impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     /// An empty table.
     pub fn new() -> Self {
-        Self {
-            entries: heapless::Vec::new(),
-            clusters: Clusters::new(),
-            scan: Scan::default(),
-            revision: 0,
-        }
+        Self { entries: heapless::Vec::new(), clusters: Clusters::new(), scan: Scan::default(), revision: 0 }
     }
 
     /// Puts an obstacle in, or in the place of the one with the same identifier. `age` is how many seconds ago it was

@@ -41,17 +41,15 @@ impl Place {
         !matches!(self, Place::Among(Kind { speed: 0.0, .. }))
     }
 
-    /// May a way out be missed? Where a step can end beyond a body, there are some to which no side of it leads that is seen on the way; among ellipsoids alone
-    /// that are not thin it is looked for from two places only.
+    /// May a way out be missed? Where a step can end beyond a body, there are some to which no side of it leads that is seen on the way.
     fn may_miss(&self) -> bool {
-        matches!(self, Place::AtAnyStep(_) | Place::Balls)
+        matches!(self, Place::AtAnyStep(_))
     }
 
     /// And is it in not too many?
     fn rarely_misses(&self, tally: &Tally) -> bool {
         match self {
             Place::AtAnyStep(_) => tally.missed <= 2 + tally.ticks / 200_000,
-            Place::Balls => tally.missed * 1000 <= 500 + tally.infeasible,
             _ => tally.missed == 0,
         }
     }
