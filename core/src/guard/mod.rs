@@ -292,7 +292,7 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
     }
 
     fn nearest_of_least(&mut self, wanted: &Vector<S, D>, best: Solution<S, D>) -> Solution<S, D> {
-        nearest_of_least(wanted, &mut self.all, self.speed.max(S::zero()), best)
+        nearest_of_least(wanted, &mut self.all, self.speed, best)
     }
 
     fn allowed(&mut self, wanted: &Vector<S, D>) -> Option<Vector<S, D>> {

@@ -82,7 +82,7 @@ pub fn nearest<S: Scalar, const D: usize>(
     if best.feasible { best } else { nearest_of_least(wanted, half_spaces, speed, best) }
 }
 
-/// The same, but where there is none any velocity of those with the least violation.
+/// The same as [`nearest`], but where there is none, any velocity of those with the least violation.
 pub(super) fn least<S: Scalar, const D: usize>(
     wanted: &Vector<S, D>,
     half_spaces: &mut [HalfSpace<S, D>],
@@ -114,6 +114,7 @@ pub(super) fn nearest_of_least<S: Scalar, const D: usize>(
     speed: S,
     best: Solution<S, D>,
 ) -> Solution<S, D> {
+    let speed = if speed > S::zero() { speed } else { S::zero() };
     let (goal, start) = within_ball(wanted, speed);
     let half_spaces = with_sides(half_spaces);
     let tolerance = coarsest(half_spaces, speed);
@@ -125,7 +126,8 @@ pub(super) fn nearest_of_least<S: Scalar, const D: usize>(
     };
     nearer.map(violated).filter(|nearer| nearer.violation <= most + tolerance).unwrap_or(best)
 }
-/// The same, and nothing where there is none.
+
+/// The same as [`nearest`], and nothing where there is none.
 pub(super) fn allowed<S: Scalar, const D: usize>(
     wanted: &Vector<S, D>,
     half_spaces: &mut [HalfSpace<S, D>],
