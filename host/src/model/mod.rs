@@ -71,7 +71,8 @@ impl ModelFile {
     pub fn parse(file: &str, text: &str) -> Result<Self, ModelFileError> {
         let model: Self = toml::from_str(text).map_err(|e| {
             let span = e.span().unwrap_or(0..0);
-            ModelFileError::located(file, text, span, e.message().to_owned())
+            let located = || ModelFileError::located(file, text, span, e.message().to_owned());
+            locate::scene(file, text).unwrap_or_else(located)
         })?;
         match model.validate() {
             Ok(()) => Ok(model),
