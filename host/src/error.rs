@@ -68,7 +68,8 @@ impl Error {
         self.exit
     }
 
-    /// `{"error": {"exit", "message", "help", "file", "line", "column", "causes"}}`; what is not known is null.
+    /// `{"error": {"exit", "message", "help", "file", "line", "column", "causes"}}`; what is not known is left out, as file, line and column
+    /// are where no place in a file is at fault.
     pub fn to_json(&self) -> Value {
         let mut causes = Vec::new();
         let mut next: Option<&dyn std::error::Error> = self.diagnostic.source();
@@ -80,18 +81,19 @@ impl Error {
             causes.push(cause.to_string());
             next = cause.source();
         }
-        let place = place(&*self.diagnostic);
-        json!({
-            "error": {
-                "exit": self.exit,
-                "message": self.diagnostic.to_string(),
-                "help": self.diagnostic.help().map(|h| h.to_string()),
-                "file": place.as_ref().and_then(|p| p.0.clone()),
-                "line": place.as_ref().map(|p| p.1),
-                "column": place.as_ref().map(|p| p.2),
-                "causes": causes,
+        let mut error = json!({ "exit": self.exit, "message": self.diagnostic.to_string(), "causes": causes });
+        let mut known = |key: &str, value: Option<Value>| {
+            if let (Some(value), Some(object)) = (value, error.as_object_mut()) {
+                object.insert(key.into(), value);
             }
-        })
+        };
+        known("help", self.diagnostic.help().map(|help| help.to_string().into()));
+        if let Some((file, line, column)) = place(&*self.diagnostic) {
+            known("file", file.map(Value::from));
+            known("line", Some(line.into()));
+            known("column", Some(column.into()));
+        }
+        json!({ "error": error })
     }
 
     /// For people, with a picture of the place if there is one.
@@ -210,7 +212,8 @@ mod tests {
         assert_eq!(exit, 1);
         assert!(err.contains("the device is gone") && err.contains("plugged in"));
         let object: Value = serde_json::from_str(&out).unwrap();
-        assert_eq!(object["error"]["line"], Value::Null);
+        let keys: Vec<&String> = object["error"].as_object().unwrap().keys().collect();
+        assert_eq!(keys, ["causes", "exit", "help", "message"]);
         assert_eq!(written(Err(Error::bad_input("no")), false).0, 2);
     }
 }

@@ -12,7 +12,7 @@ use crate::model::{ModelFile, ModelFileError, Skill, Text};
 /// Options of `pliant check`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Args {
-    /// Model file.
+    /// Model file, as `learn` writes it; a scene is checked by `plot` and `run`.
     model: PathBuf,
 }
 

@@ -21,6 +21,7 @@ mod progress;
 mod relocate;
 mod run;
 mod study;
+mod verdict;
 
 use std::io::Write;
 use std::path::Path;

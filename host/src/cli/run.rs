@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use pliant_protocol::message::{Mode, StopReason};
 use serde_json::json;
 
+use super::verdict::Verdict;
 use super::{Finished, finite, print_json, progress};
 use crate::bridge::{BridgeError, Device};
 use crate::error::{Error, Outcome, counted};
@@ -86,12 +87,13 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
             (None, false)
         }
     };
+    let verdict = Verdict::of(&scene, &runs);
     if json {
-        print_json(&as_json(&scene, args, &board, &runs, figure.as_deref()));
+        print_json(&as_json(&scene, args, &board, &runs, &verdict, figure.as_deref()));
     } else {
-        print_table(&scene, args, &board, &runs, figure.as_deref());
+        print_table(&scene, args, &board, &runs, &verdict, figure.as_deref());
     }
-    Ok(if runs.reached() && runs.untouched() && drawn { Outcome::Success } else { Outcome::Failed })
+    Ok(if verdict.failures.is_empty() && drawn { Outcome::Success } else { Outcome::Failed })
 }
 
 /// What is said of a run that did not come to its end.
@@ -122,7 +124,14 @@ fn draw(scene: &Scene, runs: &Runs) -> Result<PathBuf, Error> {
     Ok(png)
 }
 
-fn as_json(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Option<&Path>) -> serde_json::Value {
+fn as_json(
+    scene: &Scene,
+    args: &Args,
+    board: &str,
+    runs: &Runs,
+    verdict: &Verdict,
+    figure: Option<&Path>,
+) -> serde_json::Value {
     let each: Vec<_> = runs
         .runs
         .iter()
@@ -133,8 +142,9 @@ fn as_json(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Option<
                 "ticks": r.ticks,
                 "missed": r.missed,
                 "host_late": r.host_late,
-                "min_gamma": finite(r.min_gamma),
-                "nearest": r.nearest,
+                "min_gamma": finite(r.nearest.gamma),
+                "min_gamma_with_margin": finite(r.nearest_margin.gamma),
+                "nearest": r.nearest.of,
                 "time_to_goal_s": r.time_to_goal,
                 "velocities_crc32c": format!("{:08x}", r.checksum),
             })
@@ -150,44 +160,41 @@ fn as_json(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Option<
         "missed": runs.runs.iter().map(|r| r.missed).sum::<u64>(),
         "host_late": runs.runs.iter().map(|r| r.host_late).sum::<u64>(),
         "min_gamma": finite(runs.min_gamma()),
+        "min_gamma_with_margin": finite(runs.min_gamma_with_margin()),
         "time_to_goal_s": runs.time_to_goal(),
         "rtt_us": runs.rtt_us,
-        "statistics": runs.statistics,
+        "device_since_start": runs.statistics,
+        "failures": verdict.failures,
+        "remarks": verdict.remarks,
         "figure": figure,
         "runs": each,
     })
 }
 
-fn print_table(scene: &Scene, args: &Args, board: &str, runs: &Runs, figure: Option<&Path>) {
+fn print_table(scene: &Scene, args: &Args, board: &str, runs: &Runs, verdict: &Verdict, figure: Option<&Path>) {
     let pace = if args.stepped { "stepped" } else { "1 kHz" };
     say!("{} on {} ({board}, {pace}): {}\n", scene.name(), args.device, counted(scene.obstacles().len(), "obstacle"));
     say!("  start                     reached  time s  min Gamma  nearest              ticks  missed");
     for r in &runs.runs {
         let coordinates: Vec<_> = r.start.iter().take(scene.dimension()).map(|x| format!("{x:.3}")).collect();
         let time = r.time_to_goal.map_or("-".into(), |t| format!("{t:.2}"));
-        let gamma = if r.min_gamma.is_finite() { format!("{:.3}", r.min_gamma) } else { "-".into() };
+        let gamma = finite(r.nearest.gamma).map_or("-".into(), |gamma| format!("{gamma:.3}"));
         say!(
             "  {:<24}  {:<7}  {time:>6}  {gamma:>9}  {:<18}  {:>6}  {:>6}",
             format!("({})", coordinates.join(", ")),
             if r.reached { "yes" } else { "NO" },
-            r.nearest.as_deref().unwrap_or("-"),
+            r.nearest.of.as_deref().unwrap_or("-"),
             r.ticks,
             r.missed
         );
     }
     let rtt = runs.rtt_us;
     say!("\n  state to command: median {:.0} us, 99 % {:.0} us, longest {:.0} us", rtt.p50, rtt.p99, rtt.max);
-    match (runs.reached(), runs.untouched()) {
-        (true, true) => say!("  every start reached the goal and no hard core was touched"),
-        (reached, untouched) => {
-            if !reached {
-                say!("  FAILED: the goal was not reached in time from every start");
-            }
-            if !untouched {
-                say!("  FAILED: a hard core was touched (Gamma <= 1)");
-            }
-        }
+    if verdict.failures.is_empty() {
+        say!("  every start reached the goal and no hard core was touched");
     }
+    verdict.failures.iter().for_each(|failure| say!("  FAILED: {failure}"));
+    verdict.remarks.iter().for_each(|remark| say!("  {remark}"));
     if let Some(figure) = figure {
         say!("  figure: {} (and .svg beside it)", figure.display());
     }

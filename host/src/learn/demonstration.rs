@@ -25,6 +25,8 @@ const LIKE_RATES: f64 = 3.0;
 const USUAL_EXTENTS: std::ops::RangeInclusive<f64> = 0.005..=10.0;
 /// Mean speeds of skills, m/s.
 const USUAL_SPEEDS: std::ops::RangeInclusive<f64> = 0.001..=10.0;
+/// No demonstration lasts as long, s: its times are in another unit.
+const LONGEST: f64 = 1e9;
 
 /// The unit of lengths in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -143,6 +145,12 @@ impl Demonstration {
         }
         if !(size.is_finite() && samples.duration().is_finite()) {
             return fail("its values overflow".into(), "positions of a robot and times in seconds");
+        }
+        if samples.duration() > LONGEST {
+            return fail(
+                format!("it lasts {:e} s", samples.duration()),
+                "times in seconds, 1e9 from first to last at most",
+            );
         }
         // As the file counts them.
         let number = |i: usize| 1 + (0..n).filter(|i| !repeats[*i]).nth(i).unwrap_or(i);

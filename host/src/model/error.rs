@@ -3,6 +3,7 @@
 use miette::{NamedSource, SourceSpan};
 use std::io;
 use std::ops::Range;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Why a model file could not be read, written or used.
@@ -39,6 +40,9 @@ pub enum ModelFileError {
         /// The place.
         #[label("here")]
         at: SourceSpan,
+        /// What to do, where there is more to say.
+        #[help]
+        help: Option<String>,
     },
     /// A field of a model that is not from a file is wrong.
     #[error(transparent)]
@@ -74,7 +78,26 @@ impl ModelFileError {
             problem,
             text: Arc::new(NamedSource::new(file, text.to_owned()).with_language("toml")),
             at: span.into(),
+            help: None,
         }
+    }
+
+    /// A scene where a model is wanted; `model` is what it names as its own, relative to itself.
+    pub(super) fn scene(file: &str, text: &str, span: Range<usize>, model: Option<&str>) -> Self {
+        let header = text.get(span.clone()).and_then(|table| table.find('\n')).unwrap_or(span.len());
+        let problem = "this is a scene, not a model, which is only the motion of one".to_owned();
+        let mut error = Self::located(file, text, span.start..span.start + header, problem);
+        if let Self::Content { help, .. } = &mut error {
+            let its_own = model.map_or(String::new(), |m| {
+                let path = Path::new(file).parent().unwrap_or(Path::new("")).join(m);
+                format!(", here `{}`", path.display())
+            });
+            *help = Some(format!(
+                "give a model file, as `pliant learn` writes one and a scene names it by `model`{its_own}; \
+                 a scene is checked whole by `pliant plot {file}` and `pliant run {file} --stepped`"
+            ));
+        }
+        error
     }
 }
 

@@ -21,6 +21,14 @@ pub fn fault(file: &str, text: &str, component: Option<usize>, name: &str, probl
     ModelFileError::located(file, text, span(text, component, name).unwrap_or(0..0), problem)
 }
 
+/// The error of a scene that is given as a model, if it is one.
+pub fn scene(file: &str, text: &str) -> Option<ModelFileError> {
+    let fields: Fields = toml::from_str(text).ok()?;
+    let ds = fields.get("ds").filter(|_| !fields.contains_key("lyapunov"))?;
+    let model = ds.get_ref().get("model").and_then(Value::as_str);
+    Some(ModelFileError::scene(file, text, ds.span(), model))
+}
+
 /// The bytes of the field's value.
 fn span(text: &str, component: Option<usize>, name: &str) -> Option<Range<usize>> {
     let located = || toml::from_str::<Located>(text).ok();

@@ -1,4 +1,36 @@
 //! Model files: a learnt skill as text that people can read and change. Metres and seconds.
+//!
+//! # Into firmware of one's own
+//!
+//! A device that speaks `pliant-protocol` is sent its skill. Firmware that has only the core takes it along, as the bytes that an upload
+//! would carry: something on the host writes them, and the firmware, which needs no allocation for it, makes the motion of them. The
+//! certificate is checked there once more, in the numbers that run (`f32`).
+//!
+//! ```
+//! use pliant::model::ModelFile;
+//! use pliant_core::{Controller, Motion, Settings};
+//! use pliant_protocol::message::{DeviceError, UploadError};
+//! use pliant_protocol::{convert, model::{MODEL_MAX, Model}};
+//!
+//! // On the host, in a build script or a tool:
+//! fn bytes(path: &str) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+//!     let file = ModelFile::read(path.as_ref())?;
+//!     file.is_certified()?;
+//!     let mut room = [0; MODEL_MAX];
+//!     Ok(Model::from(&file.lpv_ds::<f32, 2>()?).to_bytes(&mut room)?.to_vec())
+//! }
+//!
+//! // In the firmware, with `static SKILL: &[u8] = include_bytes!("sbend.model");`
+//! fn controller(skill: &[u8]) -> Result<Controller<f32, 2, 16>, DeviceError> {
+//!     let model = Model::from_bytes(skill).map_err(|_| DeviceError::Upload(UploadError::Malformed))?;
+//!     let motion: Motion<f32, 2> = convert::motion(&model)?;
+//!     Ok(Controller::new(motion, Settings::default()))
+//! }
+//!
+//! let skill = bytes("../models/sbend.toml")?; // std::fs::write("sbend.model", skill)
+//! assert!(matches!(controller(&skill), Ok(c) if matches!(c.motion().motion(), Motion::Lpv(_))));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod convert;
 mod error;
@@ -71,7 +103,8 @@ impl ModelFile {
     pub fn parse(file: &str, text: &str) -> Result<Self, ModelFileError> {
         let model: Self = toml::from_str(text).map_err(|e| {
             let span = e.span().unwrap_or(0..0);
-            ModelFileError::located(file, text, span, e.message().to_owned())
+            let located = || ModelFileError::located(file, text, span, e.message().to_owned());
+            locate::scene(file, text).unwrap_or_else(located)
         })?;
         match model.validate() {
             Ok(()) => Ok(model),

@@ -14,7 +14,7 @@ const AWAY: [f64; 5] = [7.0, 13.0, 21.0, 29.0, 37.0];
 /// Two places nearer to one another are seen as one, px.
 const SAME: f64 = 4.0;
 /// To be a px farther away is as bad as to hide so many px of a line.
-const FARTHER: f64 = 0.3;
+const FARTHER: f64 = 0.7;
 /// To be nearer to what another text is about is as bad as to hide so many px of a line.
 const ASTRAY: f64 = 25.0;
 

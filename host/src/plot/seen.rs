@@ -30,7 +30,7 @@ impl<'a> Seen<'a> {
         Self {
             posed: o.without_margin(),
             core: region(Surface::Core),
-            margin: (o.obstacle.margin().max() > 1.0).then(|| region(Surface::Margin)),
+            margin: o.obstacle.has_margin().then(|| region(Surface::Margin)),
             shell: o.obstacle.is_soft().then(|| region(Surface::Shell)),
             before: before.filter(|_| moves).map(earlier),
             track,

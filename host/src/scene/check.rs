@@ -142,7 +142,8 @@ impl Check<'_> {
             format!("{x} is not a finite number")
         } else if match low {
             From(low) => x < low,
-            Above(low) => x <= low,
+            // A device has it in single precision, where it has to be above as well.
+            Above(low) => f64::from(x as f32) <= low,
         } {
             format!("{x} is too small")
         } else if x > high {

@@ -170,7 +170,9 @@ impl Diagnostic for SceneError {
         if let (Some(_), Some(line)) = (&self.0.cause, self.0.line) {
             return Some(Box::new(format!("it is named by {}, line {line}: {}", self.0.file, self.0.field)));
         }
-        self.0.allowed.as_ref().map(|what| Box::new(format!("allowed: {what}")) as Box<dyn fmt::Display>)
+        // Of a file that cannot be read nothing is known that could be allowed or not: what is said is what to do.
+        let lead = if self.0.kind == SceneErrorKind::Unreadable { "" } else { "allowed: " };
+        self.0.allowed.as_ref().map(|what| Box::new(format!("{lead}{what}")) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {

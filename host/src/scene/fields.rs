@@ -98,20 +98,25 @@ pub(super) const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "obstacle.soft",
-        "one soft semi-axis (half extent) for each dimension, in m, from the hard one to 100 times the hard one; of a wall, a hundredth of it to it",
+        "one soft semi-axis (half extent) for each dimension, in m, from the hard one to 100 times the hard one; of a wall, a hundredth of it to it; \
+         of a polygon the same times the hard one along both",
     ),
     (
         "obstacle.layer",
-        "the soft layer's thickness along the axes, in m, 0 or more; no soft semi-axis beyond 100 times the hard one, of a wall below a hundredth",
+        "the soft layer's thickness along the axes (of a polygon, before the edge nearest to its centre: elsewhere it is as thick or thicker), in m, \
+         0 or more; no soft semi-axis beyond 100 times the hard one, of a wall below a hundredth",
     ),
     ("obstacle.curvature", "a whole number from 1 (ellipsoid, the default) to 8 (nearly a box); only with `ellipsoid`"),
-    ("obstacle.margin", "one safety factor for each dimension, from 1 (the default) to 100"),
+    (
+        "obstacle.margin",
+        "one safety factor for each dimension, from 1 (the default) to 100; of a polygon the same for both",
+    ),
     ("obstacle.velocity", "as many numbers as the scene has dimensions, in m/s, within +-100; not with `path`"),
     ("obstacle.angular_velocity", "a number (2-D) or [x, y, z] (3-D), in rad/s, within +-100"),
     (
         "obstacle.growth",
-        "a number within +-100 (m/s): how fast every half extent becomes longer, the soft layer along with it; below zero it shrinks, \
-         to almost nothing in the end; default 0",
+        "a number within +-100 (m/s): how fast every half extent becomes longer (a polygon: how fast its nearest edge moves out, the rest in \
+         proportion), the soft layer along with it; below zero it shrinks, to almost nothing in the end; default 0",
     ),
     (
         "obstacle.reference",
@@ -120,7 +125,7 @@ pub(super) const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "obstacle.path",
-        "[[t, x, y], ...] (3-D: [t, x, y, z]): one point or more, t in s from 0 upwards and increasing, at most 100 m/s between points",
+        "[[t, x, y], ...] (3-D: [t, x, y, z]): one point or more, t in s from 0 to 1000000 and increasing, at most 100 m/s between points",
     ),
 ];
 

@@ -92,6 +92,10 @@ impl SceneObstacle {
     pub fn margin(&self) -> Vector3<f64> {
         self.margin
     }
+    /// Is its core larger to the device than it is?
+    pub fn has_margin(&self) -> bool {
+        self.margin.max() > 1.0
+    }
     /// The reference point in the obstacle's frame, m.
     pub fn reference(&self) -> Vector3<f64> {
         self.reference

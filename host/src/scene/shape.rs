@@ -64,23 +64,29 @@ impl Shape {
         }
     }
 
-    /// The least half extent, m.
+    /// What soft layers and growth are measured by, m: half of the extent along each axis; of a polygon, which is scaled by one factor, for
+    /// both axes how far its nearest edge is from the origin, so that no edge moves less.
+    pub(super) fn measure(&self) -> Vector3<f64> {
+        match self {
+            Self::Polygon { vertices } => {
+                let nearest = edges(vertices).map(|(from, to)| distance(from, to)).fold(f64::INFINITY, f64::min);
+                Vector3::new(nearest, nearest, 0.0)
+            }
+            _ => self.extent(),
+        }
+    }
+
+    /// The least of these, m.
     pub(super) fn least(&self) -> f64 {
-        self.extent().iter().copied().filter(|a| *a > 0.0).fold(f64::INFINITY, f64::min)
+        self.measure().iter().copied().filter(|a| *a > 0.0).fold(f64::INFINITY, f64::min)
     }
 
     /// The smallest value that [`grown`](Self::grown) may be given, m: something of the core is left.
     pub(super) fn smallest(&self) -> f64 {
-        let inner = match self {
-            Self::Polygon { vertices } => {
-                edges(vertices).map(|(from, to)| distance(from, to)).fold(f64::INFINITY, f64::min)
-            }
-            _ => self.least(),
-        };
-        self.least() * (LEAST * 1.001 / inner - 1.0).min(0.0)
+        (LEAST * 1.001 - self.least()).min(0.0)
     }
 
-    /// With every half extent longer by this, m (below zero: shorter).
+    /// With every half extent longer by this, m (below zero: shorter); a polygon is scaled so that its nearest edge moves as far.
     ///
     /// What a device extrapolates from one sighting to the next is never smaller than this. So rounded edges grow with what they round, as
     /// they would if the surface moved along its normal, and keep their radius where it shrinks.
@@ -98,8 +104,8 @@ impl Shape {
             }
             Self::Capsule { radius, half_length } => Self::Capsule { radius: radius + by, half_length: *half_length },
             Self::Polygon { vertices } => {
-                let size = self.extent().map(|a| 1.0 + by / a);
-                Self::Polygon { vertices: vertices.iter().map(|[x, y]| [x * size.x, y * size.y]).collect() }
+                let size = 1.0 + by / self.least();
+                Self::Polygon { vertices: vertices.iter().map(|v| v.map(|x| x * size)).collect() }
             }
         }
     }

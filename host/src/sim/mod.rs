@@ -10,4 +10,4 @@ mod timed;
 pub use camera::{Camera, Perception, Sight};
 pub use latency::Latency;
 pub use robot::PointRobot;
-pub use run::{PathPoint, Run, RunOptions, Runs, TICK, prepare, run_scene};
+pub use run::{Nearest, PathPoint, Run, RunOptions, Runs, TICK, prepare, run_scene};

@@ -55,10 +55,10 @@ pub struct Run {
     pub missed: u64,
     /// Milliseconds in which this host came too late to send a state in time.
     pub host_late: u64,
-    /// Least Gamma at any time, by the scene's true geometry in f64; infinite without obstacles and scan.
-    pub min_gamma: f64,
-    /// Whose it is: an obstacle's name, or [`SceneScan::NAME`].
-    pub nearest: Option<String>,
+    /// What came nearest, by the scene's true geometry in f64: hard cores as they are, without their safety factors.
+    pub nearest: Nearest,
+    /// The same of cores with their safety factors, which the device keeps the robot out of.
+    pub nearest_margin: Nearest,
     /// s; none if the goal was not reached.
     pub time_to_goal: Option<f64>,
     /// Where it went, every 10 ms.
@@ -66,6 +66,30 @@ pub struct Run {
     /// The bits of every velocity, in order: two devices that agree have the same checksum.
     pub checksum: u32,
     pub(super) round_trips: Vec<f64>,
+}
+
+/// The least Gamma at any time of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nearest {
+    /// Infinite without obstacles and scan.
+    pub gamma: f64,
+    /// Whose it is: an obstacle's name, or [`SceneScan::NAME`].
+    pub of: Option<String>,
+}
+
+impl Nearest {
+    const NOTHING: Self = Self { gamma: f64::INFINITY, of: None };
+
+    fn seen(&mut self, gamma: f64, name: &str) {
+        if gamma < self.gamma {
+            (self.gamma, self.of) = (gamma, Some(name.into()));
+        }
+    }
+
+    /// Was it touched?
+    pub fn touched(&self) -> bool {
+        self.gamma <= 1.0
+    }
 }
 
 /// All starts of a scene.
@@ -84,13 +108,17 @@ impl Runs {
     pub fn reached(&self) -> bool {
         self.runs.iter().all(|r| r.reached)
     }
-    /// Did no run touch a hard core?
+    /// Did no run touch a hard core? (Its margin may have been entered.)
     pub fn untouched(&self) -> bool {
-        self.min_gamma() > 1.0
+        !self.runs.iter().any(|r| r.nearest.touched())
     }
-    /// The least Gamma of all runs.
+    /// The least Gamma of all runs, of cores without their safety factors.
     pub fn min_gamma(&self) -> f64 {
-        self.runs.iter().map(|r| r.min_gamma).fold(f64::INFINITY, f64::min)
+        self.runs.iter().map(|r| r.nearest.gamma).fold(f64::INFINITY, f64::min)
+    }
+    /// The same of cores with their safety factors.
+    pub fn min_gamma_with_margin(&self) -> f64 {
+        self.runs.iter().map(|r| r.nearest_margin.gamma).fold(f64::INFINITY, f64::min)
     }
     /// The longest time to the goal; none if one run did not reach it.
     pub fn time_to_goal(&self) -> Option<f64> {
@@ -192,8 +220,8 @@ impl<'a> Log<'a> {
             ticks: 0,
             missed: 0,
             host_late: 0,
-            min_gamma: f64::INFINITY,
-            nearest: None,
+            nearest: Nearest::NOTHING,
+            nearest_margin: Nearest::NOTHING,
             time_to_goal: None,
             path: Vec::new(),
             checksum: 0,
@@ -223,13 +251,14 @@ impl<'a> Log<'a> {
     /// The robot is here; true once it has arrived.
     pub(super) fn moved(&mut self, time: f64, position: Vector3<f64>, velocity: Vector3<f64>, region: Region) -> bool {
         for o in self.scene.obstacles_at(time) {
-            let gamma = o.gamma(&position);
-            if gamma < self.run.min_gamma {
-                (self.run.min_gamma, self.run.nearest) = (gamma, Some(o.obstacle.name().into()));
-            }
+            let (gamma, name) = (o.gamma(&position), o.obstacle.name());
+            self.run.nearest_margin.seen(gamma, name);
+            let bare = if o.obstacle.has_margin() { o.without_margin().gamma(&position) } else { gamma };
+            self.run.nearest.seen(bare, name);
         }
-        if let Some(gamma) = self.scene.scan().map(|s| s.gamma(&position)).filter(|gamma| *gamma < self.run.min_gamma) {
-            (self.run.min_gamma, self.run.nearest) = (gamma, Some(SceneScan::NAME.into()));
+        if let Some(gamma) = self.scene.scan().map(|s| s.gamma(&position)) {
+            self.run.nearest_margin.seen(gamma, SceneScan::NAME);
+            self.run.nearest.seen(gamma, SceneScan::NAME);
         }
         let arrived = self.distance(time, &position) <= self.scene.goal().tolerance;
         if self.seen.is_multiple_of(KEPT_TICKS) || arrived {

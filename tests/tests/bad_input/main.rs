@@ -239,3 +239,17 @@ fn a_model_is_no_scene() {
         refused(&folder, &[command, "m.toml"], &["m.toml", "a model", "[ds]"]);
     }
 }
+
+#[test]
+fn a_scene_is_no_model() {
+    let folder = Folder::new("scene-as-model");
+    folder.write("scene.toml", SCENE);
+    let words = ["scene.toml, line 1", "a scene, not a model", "`pliant learn`", "`pliant run scene.toml --stepped`"];
+    refused(&folder, &["check", "scene.toml"], &words);
+    refused(&folder, &["move", "scene.toml", "-o", "n.toml", "--scale", "2"], &words);
+    // The one it names is said, as it is reached from here.
+    let learnt = SCENE.replace("linear = { attractor = [0.0, 0.0], gain = 1.0 }", "model = \"skills/m.toml\"");
+    fs::create_dir(folder.0.join("sub")).unwrap();
+    folder.write("sub/scene.toml", learnt);
+    refused(&folder, &["check", "sub/scene.toml"], &["sub/scene.toml, line 1", "`sub/skills/m.toml`"]);
+}

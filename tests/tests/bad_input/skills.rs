@@ -73,6 +73,7 @@ fn demonstrations() {
         ("inf.csv", b"t,x,y,vx,vy\n0,1,0,0,0\n1,0,0,inf,0\n", &["inf.csv", "line 3", "vx"]),
         ("far.csv", b"t,x,y\n0,5000,0\n1,2500,0\n2,0,0\n", &["far.csv", "1000 m", "--unit"]),
         ("huge.csv", b"t,x,y\n0,1e308,0\n1,-1e308,0\n2,0,0\n", &["huge.csv"]),
+        ("long.csv", b"t,x,y\n0,0.1,0.2\n1e300,0,0\n", &["long.csv", "lasts 1e300 s", "times in seconds"]),
         ("rubbish.csv", &[0xff, 0x00, 0x80, 0x0a], &["rubbish.csv", "line 1"]),
         ("empty.mat", b"", &["empty.mat", "no MATLAB v5 header"]),
         ("empty.npz", b"", &["empty.npz", "no ZIP archive"]),

@@ -19,6 +19,22 @@ use crate::scene::track::Track;
 const OUTSIDE: f64 = 1.0005;
 /// How far a quaternion's length may be from one.
 const UNIT: f64 = 5e-4;
+/// How far a polygon's two factors may be apart, in proportion.
+const ALIKE: f64 = 1e-4;
+/// Why a polygon has one factor.
+const ONE_FACTOR: &str = "a polygon has one factor for both: with two, a part of it could be uncovered";
+
+/// The two factors of a polygon, if they are not one.
+fn unequal(shape: &Shape, factors: &Vector3<f64>) -> Option<[f64; 2]> {
+    let polygon = matches!(shape, Shape::Polygon { .. });
+    (polygon && (factors.x - factors.y).abs() > ALIKE * factors.x).then_some([factors.x, factors.y])
+}
+
+/// Rounded to six digits.
+fn six_digits(x: f64) -> f64 {
+    let unit = 10f64.powi(5 - x.abs().max(1e-300).log10().floor() as i32);
+    (x * unit).round() / unit
+}
 
 impl Check<'_> {
     pub(super) fn obstacle(
@@ -35,7 +51,7 @@ impl Check<'_> {
         let shape = self.shape(&file.shape, file.curvature.as_ref())?;
         let wall = file.wall.unwrap_or(false);
         let margin = match &file.margin {
-            Some(margin) => self.numbers(margin, "obstacle.margin", 1.0, LARGEST_RATIO)?,
+            Some(margin) => self.margin(margin, &shape)?,
             None => self.ones(),
         };
         let growth = file.growth.as_ref();
@@ -43,7 +59,7 @@ impl Check<'_> {
             id,
             name,
             dimension: self.dimension,
-            soft_ratio: self.soft_ratio(file, &shape.extent(), wall)?,
+            soft_ratio: self.soft_ratio(file, &shape, wall)?,
             margin,
             reference: file.reference.as_ref().map_or(Ok(Vector3::zeros()), |r| self.point(r, "obstacle.reference"))?,
             track: self.obstacle_track(file, span.clone())?,
@@ -69,7 +85,17 @@ impl Check<'_> {
         Err(self.error(Kind::Value, "obstacle.name", name.span(), problem))
     }
 
-    fn soft_ratio(&self, file: &ObstacleFile, hard: &Vector3<f64>, wall: bool) -> Result<Vector3<f64>, SceneError> {
+    fn margin(&self, margin: &Numbers, shape: &Shape) -> Result<Vector3<f64>, SceneError> {
+        let factors = self.numbers(margin, "obstacle.margin", 1.0, LARGEST_RATIO)?;
+        let Some([x, y]) = unequal(shape, &factors) else {
+            return Ok(factors);
+        };
+        let problem = format!("is {x} along one axis and {y} along the other, but {ONE_FACTOR}");
+        let allowed = format!("one factor twice, from 1 to 100, such as [{0:?}, {0:?}]", x.max(y));
+        Err(self.error(Kind::Value, "obstacle.margin", margin.span(), problem).allowing(allowed))
+    }
+
+    fn soft_ratio(&self, file: &ObstacleFile, shape: &Shape, wall: bool) -> Result<Vector3<f64>, SceneError> {
         let ones = self.ones();
         let keys = [
             ("stiffness", file.stiffness.as_ref().map(Spanned::span)),
@@ -94,23 +120,41 @@ impl Check<'_> {
             ("obstacle.stiffness", ones * (k.ln() + 1.0))
         } else if let Some(soft) = &file.soft {
             let soft = self.numbers(soft, "obstacle.soft", 0.0, f64::MAX)?;
-            let ratio = self.over(&soft, hard, wall);
+            let hard = shape.extent();
+            let ratio = self.over(&soft, &hard, wall);
             if let Some((i, _)) = ratio.iter().enumerate().find(|(i, rho)| *i < self.dimension && **rho < 1.0) {
                 let than = if wall { "larger" } else { "smaller" };
                 let problem = format!("{} is {than} than the hard semi-axis {}", soft[i], hard[i]);
                 let at = file.soft.as_ref().and_then(|s| s.get_ref().get(i)).map_or(span, Spanned::span);
                 return Err(self.error(Kind::Value, "obstacle.soft", at, problem));
             }
+            if let Some([x, y]) = unequal(shape, &ratio) {
+                let larger = if wall { 1.0 / x.max(y) } else { x.max(y) };
+                let problem = format!(
+                    "makes the core {x:.4} times as large along one axis and {y:.4} along the other, but {ONE_FACTOR}"
+                );
+                let [a, b] = [hard.x, hard.y].map(|h| six_digits(h * larger));
+                let allowed =
+                    format!("the core's half extents times one factor, such as [{a}, {b}]; or `stiffness`, or `layer`");
+                return Err(self.error(Kind::Value, "obstacle.soft", span, problem).allowing(allowed));
+            }
             ("obstacle.soft", ratio)
         } else {
+            let hard = shape.measure();
             let layer =
                 file.layer.as_ref().map_or(Ok(0.0), |l| self.number(l, "obstacle.layer", From(0.0), f64::MAX))?;
             let soft = hard.map(|a| if wall { (a - layer).max(0.0) } else { a + layer });
-            ("obstacle.layer", self.over(&soft, hard, wall))
+            ("obstacle.layer", self.over(&soft, &hard, wall))
         };
         if ratio.max() > LARGEST_RATIO {
             let problem = if wall {
                 "leaves less than a hundredth of the free space without soft layer".to_owned()
+            } else if let (Shape::Polygon { .. }, "obstacle.layer") = (shape, field) {
+                let nearest = six_digits(shape.least());
+                format!(
+                    "makes the polygon, whose nearest edge is {nearest} m from its centre, {:.4e} times as large",
+                    ratio.max()
+                )
             } else {
                 format!("makes a soft semi-axis {:.4e} times the hard one", ratio.max())
             };
@@ -220,8 +264,7 @@ impl Check<'_> {
             Some(other) => return Err(self.error(Kind::Value, "obstacle", span.clone(), other.to_string())),
         };
         let shape = format!("obstacle.shape.{}", obstacle.shape.key());
-        let problem = "is refused in single precision: it is too near to a limit";
-        let (field, problem) = match error {
+        let (field, at) = match error {
             ObstacleError::Reference => {
                 let at = file.reference.as_ref().map_or(span.clone(), |r| r.span());
                 let problem = match (&obstacle.shape, obstacle.wall) {
@@ -233,18 +276,23 @@ impl Check<'_> {
                 };
                 return Err(self.error(Kind::Geometry, "obstacle.reference", at, problem));
             }
-            ObstacleError::Center => ("obstacle.center", problem),
-            ObstacleError::Rotation => ("obstacle.rotation", problem),
-            ObstacleError::SoftRatio => ("obstacle.soft", problem),
-            ObstacleError::Margin => ("obstacle.margin", problem),
-            ObstacleError::Velocity => ("obstacle.velocity", problem),
-            ObstacleError::Spin => ("obstacle.angular_velocity", problem),
-            ObstacleError::Growth => ("obstacle.growth", problem),
-            ObstacleError::Curvature => ("obstacle.curvature", problem),
-            ObstacleError::Rounding => ("obstacle.shape.rounding", problem),
-            ObstacleError::Dimension | ObstacleError::Axes | ObstacleError::Vertices => (shape.as_str(), problem),
+            ObstacleError::Center => ("obstacle.center", file.center.as_ref().map(Spanned::span)),
+            ObstacleError::Rotation => ("obstacle.rotation", file.rotation.as_ref().map(Spanned::span)),
+            ObstacleError::SoftRatio => match (&file.stiffness, &file.layer) {
+                (Some(stiffness), _) => ("obstacle.stiffness", Some(stiffness.span())),
+                (None, Some(layer)) => ("obstacle.layer", Some(layer.span())),
+                (None, None) => ("obstacle.soft", file.soft.as_ref().map(Spanned::span)),
+            },
+            ObstacleError::Margin => ("obstacle.margin", file.margin.as_ref().map(Spanned::span)),
+            ObstacleError::Velocity => ("obstacle.velocity", file.velocity.as_ref().map(Spanned::span)),
+            ObstacleError::Spin => ("obstacle.angular_velocity", file.angular_velocity.as_ref().map(Spanned::span)),
+            ObstacleError::Growth => ("obstacle.growth", file.growth.as_ref().map(Spanned::span)),
+            ObstacleError::Curvature => ("obstacle.curvature", file.curvature.as_ref().map(Spanned::span)),
+            ObstacleError::Rounding => ("obstacle.shape.rounding", None),
+            ObstacleError::Dimension | ObstacleError::Axes | ObstacleError::Vertices => (shape.as_str(), None),
         };
-        Err(self.error(Kind::Value, field, file.shape.span(), problem))
+        let problem = "is refused in single precision: it is too near to a limit";
+        Err(self.error(Kind::Value, field, at.unwrap_or_else(|| file.shape.span()), problem))
     }
 
     /// Why the core does not take it as it is at time `t`, s. Its reference point has to be a little farther inside than the core wants it.

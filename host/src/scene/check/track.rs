@@ -9,6 +9,9 @@ use crate::scene::error::SceneError;
 use crate::scene::file::{Numbers, Rows};
 use crate::scene::track::Track;
 
+/// The last time of a path, s: longer than any run.
+const LAST: f64 = 1e6;
+
 impl Check<'_> {
     /// A velocity and a path exclude each other. `field` is the table they are keys of; `from` is where a straight track begins, and a path
     /// whose first point comes later; none if neither has to.
@@ -74,7 +77,7 @@ impl Check<'_> {
             );
             return Err(self.error(Kind::Dimension, field, row.span(), problem));
         };
-        let t = self.number(t, field, From(0.0), f64::MAX)?;
+        let t = self.number(t, field, From(0.0), LAST)?;
         let mut place = Vector3::zeros();
         for (to, n) in place.iter_mut().zip(numbers.iter().skip(1)) {
             *to = self.number(n, field, From(-RANGE), RANGE)?;

@@ -75,6 +75,7 @@ fn a_file_that_is_not_there_and_one_that_is_not_text() {
     let error = Scene::load("no/such/scene.toml").unwrap_err();
     assert_eq!(error.kind(), SceneErrorKind::Unreadable);
     assert!(error.to_string().starts_with("no/such/scene.toml: cannot be read"));
+    assert!(error.help().unwrap().to_string().starts_with("give the path of a scene file"));
     assert!(Scene::load(".").is_err());
 }
 

@@ -81,6 +81,14 @@ const WRONG: &[Case] = &[
     (POLYGON, "[-0.02, 0.0]", "[nan, 0.0]", 11, "obstacle.shape.polygon", "NaN"),
     (POLYGON, "[-0.06, 0.08]", "[-0.06, 0.0]", 9, "obstacle.shape.polygon", "passes through it"),
     (POLYGON, "center =", "reference = [-0.05, 0.0]\ncenter =", 7, "obstacle.reference", "does not see the whole polygon"),
+    // one factor for a polygon
+    (POLYGON, "center =", "soft = [0.15, 0.1]\ncenter =", 7, "obstacle.soft", "1.5000 times as large along one axis and 1.2500 along the other"),
+    (POLYGON, "center =", "soft = [0.15, 0.1]\ncenter =", 7, "obstacle.soft", "such as [0.15, 0.12]; or `stiffness`, or `layer`"),
+    (POLYGON, "center =", "wall = true\nsoft = [0.08, 0.04]\ncenter =", 8, "obstacle.soft", "such as [0.05, 0.04]"),
+    (POLYGON, "center =", "margin = [1.0, 1.2]\ncenter =", 7, "obstacle.margin", "is 1 along one axis and 1.2 along the other"),
+    (POLYGON, "center =", "margin = [1.0, 1.2]\ncenter =", 7, "obstacle.margin", "such as [1.2, 1.2]"),
+    (POLYGON, "center =", "layer = 1.8\ncenter =", 7, "obstacle.layer", "nearest edge is 0.0178885 m from its centre, 1.0162e2 times"),
+    (POLYGON, "center =", "wall = true\nlayer = 0.0178\ncenter =", 8, "obstacle.layer", "less than a hundredth"),
     // walls
     (ROOM, "wall = true", "wall = \"yes\"", 8, "obstacle.wall", "expected a boolean"),
     (ROOM, "[-0.3, 0.1]", "[-0.6, 0.1]", 4, "start.position", "outside the free space of the wall \"room\""),
@@ -159,7 +167,10 @@ fn growth_lengthens_every_half_extent_and_ends_small() {
     let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
     assert!(near(reach(BOX, 0.02, 2.0, 0), 0.14) && near(reach(BOX, 0.02, 2.0, 1), 0.09));
     assert!(near(reach(BOX, -0.02, 2.0, 0), 0.06) && near(reach(BOX, -0.02, 2.0, 1), 0.01));
-    assert!(near(reach(POLYGON, 0.02, 2.0, 0), 0.14) && near(reach(ROUND, 0.02, 2.0, 2), 0.14));
+    assert!(near(reach(ROUND, 0.02, 2.0, 2), 0.14));
+    // A polygon grows in proportion, its nearest edge by 4 cm.
+    let nearest = 0.0016 / 0.04f64.hypot(0.08);
+    assert!(near(reach(POLYGON, 0.02, 2.0, 0), 0.1 * (1.0 + 0.04 / nearest)));
     let scene = parse(&BOX.replace("center =", "growth = -0.02\ncenter =")).unwrap();
     let last = scene.obstacles()[0].at(20.0);
     assert!(last.shape.extent().y < 2e-4 && last.growth == 0.0, "{:?}", last.shape);
@@ -167,9 +178,9 @@ fn growth_lengthens_every_half_extent_and_ends_small() {
 
 /// What a device makes of a sighting while it waits for the next is never smaller than what is then seen.
 #[test]
-fn what_grows_is_extrapolated_on_the_safe_side() {
-    for text in [BOX, POLYGON] {
-        let scene = parse(&text.replace("center =", "growth = 0.05\ncenter =")).unwrap();
+fn what_grows_or_shrinks_is_extrapolated_on_the_safe_side() {
+    for (text, rate) in [(BOX, "0.05"), (POLYGON, "0.05"), (BOX, "-0.005"), (POLYGON, "-0.005")] {
+        let scene = parse(&text.replace("center =", &format!("growth = {rate}\ncenter ="))).unwrap();
         let o = &scene.obstacles()[0];
         for i in 0..90 {
             let angle = f64::from(i) * std::f64::consts::TAU / 90.0;
@@ -181,5 +192,31 @@ fn what_grows_is_extrapolated_on_the_safe_side() {
             let gamma = table.iter().next().unwrap().obstacle().gamma(&grown.xy());
             assert!(gamma < 1.0 + 1e-9, "{gamma} at {angle}");
         }
+    }
+}
+
+#[test]
+fn a_polygons_layer_is_nowhere_thinner_than_it_is_said_to_be() {
+    let star = "[[0.14, 0.0], [0.053, 0.038], [0.043, 0.133], [-0.02, 0.062], [-0.113, 0.082], \
+        [-0.065, 0.0], [-0.113, -0.082], [-0.02, -0.062], [0.043, -0.133], [0.053, -0.038]]";
+    let (from, to) = (POLYGON.find("[\n").unwrap(), POLYGON.find("] }").unwrap());
+    let star = format!("{}{star}{}", &POLYGON[..from], &POLYGON[to + 1..]);
+    for (text, wall) in [(&star, false), (&star, true), (&POLYGON.to_owned(), false), (&POLYGON.to_owned(), true)] {
+        // A wall has to hold the start and the goal.
+        let text = text.replace("[0.4, 0.4]", if wall { "[0.3, 0.1]" } else { "[0.4, 0.4]" });
+        let text = text.replace(
+            "attractor = [0.0, 0.0]",
+            if wall { "attractor = [0.301, 0.1]" } else { "attractor = [0.0, 0.0]" },
+        );
+        let scene = parse(&text.replace("center =", &format!("wall = {wall}\nlayer = 0.01\ncenter ="))).unwrap();
+        let o = scene.obstacles()[0].at(0.0);
+        let ring = |at: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| -> Vec<Vector3<f64>> {
+            let way = |i: u32| f64::from(i) * std::f64::consts::TAU / 3600.0;
+            (0..3600).map(|i| at(&Vector3::new(way(i).cos(), way(i).sin(), 0.0))).collect()
+        };
+        let (hard, soft) = (ring(&|d| o.surface(d)), ring(&|d| o.soft_surface(d)));
+        let thickness = |s: &Vector3<f64>| hard.iter().map(|h| (h - s).norm()).fold(f64::INFINITY, f64::min);
+        let least = soft.iter().map(thickness).fold(f64::INFINITY, f64::min);
+        assert!((0.01..0.0101).contains(&(least + 1e-9)), "{least} (wall: {wall})");
     }
 }

@@ -54,7 +54,7 @@ pub fn compare(case: &Case<'_>, device: &Device, here: &Drive) -> Result<Compare
         checksum: run.checksum,
         identical: (run.checksum, run.ticks) == (reference.checksum, reference.ticks),
         reached: run.reached,
-        min_gamma: run.min_gamma,
+        min_gamma: run.nearest.gamma,
         apart: apart.fold(0.0, f64::max),
     })
 }
