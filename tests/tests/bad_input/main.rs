@@ -6,6 +6,7 @@ mod skills;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use pliant_tests::programs::{self, Ended, root};
 
@@ -13,7 +14,10 @@ struct Folder(PathBuf);
 
 impl Folder {
     fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("pliant-bad-{name}-{}", std::process::id()));
+        // Tests run side by side, and two may choose one name.
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let (process, count) = (std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let path = std::env::temp_dir().join(format!("pliant-bad-{name}-{process}-{count}"));
         fs::create_dir_all(&path).unwrap();
         Self(path)
     }
