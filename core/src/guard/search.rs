@@ -11,14 +11,17 @@
 //! which leave out none of it, wherever y is, so those of all places are kept. A place is taken if it is outside of every core, whatever half-spaces
 //! say; once it is, the velocity nearest to the wanted one among what is seen from there, if that leads outside too.
 //!
-//! From x it goes two places on (eight where round walls are near, in space twelve: one after the other comes nearer to their curve), and then one from each end of
-//! the step along each axis of the nearest obstacle, four or six in all. So it is bounded, and what is narrow can be missed.
+//! From x it goes two places on (five among ellipsoids alone; eight where round walls are near, in space twelve: one after the other comes nearer to their
+//! curve), and then one (among ellipsoids alone four) from each end of the step along each axis of the nearest obstacle, four or six in all. So it is bounded,
+//! and what is narrow can be missed.
 
 use super::{BARE, Guard, HalfSpace, HalfSpaces, Next, View, rounding};
 use crate::{Matrix, Obstacle, Scalar, Vector, times, unit};
 
-/// Places one after the other from x; and near round walls, for each dimension.
-const PLACES: usize = 2;
+/// Places one after the other, from x and from each end of the step; a look at ellipsoids costs little.
+const PLACES: (usize, usize) = (2, 1);
+const PLACES_AMONG_ELLIPSOIDS: (usize, usize) = (5, 4);
+/// From x where round walls are near, for each dimension.
 const PLACES_IN_WALLS: usize = 4;
 /// Room for so many tangents of walls.
 const TANGENTS: usize = 48;
@@ -50,12 +53,18 @@ impl<S: Scalar> Guard<S> {
                 let _ = search.others.push((*index, *reach));
             }
         }
-        let places = if search.walls.is_empty() { PLACES } else { PLACES_IN_WALLS * D };
+        let (places, from_ends) = if !search.walls.is_empty() {
+            (PLACES_IN_WALLS * D, PLACES.1)
+        } else if table.scan().points().is_empty() && next.near().all(Obstacle::is_plain) {
+            PLACES_AMONG_ELLIPSOIDS
+        } else {
+            PLACES
+        };
         search.from(Vector::zeros(), places).or_else(|| {
             (0..D).flat_map(|axis| [(axis, speed), (axis, -speed)]).find_map(|(axis, speed)| {
                 let along = Vector::from_fn(|i, _| if i == axis { S::one() } else { S::zero() });
                 // Of unit length whatever was given for a rotation.
-                search.from(unit(&times(&frame, &along)).1 * speed, 1)
+                search.from(unit(&times(&frame, &along)).1 * speed, from_ends)
             })
         })
     }

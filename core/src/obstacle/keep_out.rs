@@ -54,7 +54,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let inverse = one / norm(&normal);
         keep(
             times(&self.spec.rotation, &(normal * inverse)),
-            size * (largest * size - one) * unit * inverse - self.blur,
+            size * (largest * size - one) * (unit * inverse) - self.blur,
         );
     }
 
@@ -71,7 +71,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             return None;
         }
         let bend = step * self.slimmest;
-        // In fixed point the reciprocal of what is very thin is out of range.
+        // Of what a step can lead through to the other side nothing is known.
         if !(self.plain && bend < S::one()) {
             let twice = step + step;
             let depth = if self.is_deeper(gamma, step) { twice } else { -twice };
@@ -80,8 +80,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let (normal, unit) = self.steepened(&u);
         // At the centre it has no direction, but all the more depth.
         let inverse = S::one() / norm(&normal);
-        let half = S::from_f64(0.5);
-        let depth = (S::one() - gamma - bend * bend) * half * unit * inverse;
+        let depth = (S::one() - gamma - bend * bend) * (S::from_f64(0.5) * unit * inverse);
         Some((times(&self.spec.rotation, &(normal * inverse)), depth))
     }
 
@@ -95,6 +94,11 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         // In fixed point a short axis' reciprocal has no square.
         let shortest = one / self.slimmest;
         (t.zip_map(&self.hard, |t, inverse| t * (inverse * shortest)), shortest)
+    }
+
+    /// Is it an ellipsoid with p = 1, and no wall?
+    pub(crate) fn is_plain(&self) -> bool {
+        self.plain
     }
 
     /// Is it a wall whose free space is convex?

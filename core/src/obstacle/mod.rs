@@ -97,9 +97,10 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     usual: bool,
     /// Is Gamma the square of the gauge? Of a wall and a superellipsoid it is not.
     quadratic: bool,
-    /// Does it move, turn or grow? Does it turn?
+    /// Does it move, turn or grow? Does it turn? Has it a `swelling`?
     moves: bool,
     spins: bool,
+    swells: bool,
     /// How fast the surface moves along the shape's normal because it grows, m/s: never less towards the free side
     /// than it really does.
     swelling: S,
@@ -164,6 +165,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             moves: false,
             spins: false,
             swelling: S::zero(),
+            swells: false,
             slimmest: S::one(),
             blur: S::zero(),
             rim: S::one(),

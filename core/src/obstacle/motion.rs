@@ -149,6 +149,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             _ => S::one(),
         };
         self.swelling = ageing * most + grows * eta * if retreats { least } else { most };
+        self.swells = self.swelling != S::zero();
         self.spins = !is_zero(&self.spec.spin);
         self.moves = self.spins || !is_zero(&self.spec.velocity) || grows != zero || self.ageing != zero;
         self.sort();

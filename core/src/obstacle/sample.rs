@@ -39,15 +39,23 @@ const FADING: f64 = 10.0;
 /// That axis in the obstacle's frame: one along which robots seldom approach.
 const LEANING: [f64; 3] = [1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0];
 
-impl<S: Scalar, const D: usize> Sample<S, D> {
-    /// How far the surface may come in a step of `dt`, s, and as much again for the curve of its way, m.
-    #[inline(always)]
-    pub fn comes(&self, dt: S) -> S {
-        self.surface_velocity.iter().fold(S::zero(), |sum, s| sum + s.abs()) * (dt + dt)
-    }
-}
-
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
+    /// How far the surface that was sampled may come in a step of `dt`, s, and as much again for the curve of its way, m.
+    #[inline(always)]
+    pub(crate) fn comes(&self, sample: &Sample<S, D>, dt: S) -> S {
+        let twice = dt + dt;
+        let way = sample.surface_velocity.iter().fold(S::zero(), |sum, s| sum + s.abs()) * twice;
+        if self.swells { self.comes_growing(way, twice) } else { way }
+    }
+
+    /// What motion and growth come to together at one place says little of others: there they need not cancel.
+    #[cold]
+    #[inline(never)]
+    fn comes_growing(&self, way: S, twice: S) -> S {
+        let growth = self.swelling.abs() * twice;
+        way + growth + growth
+    }
+
     /// How it looks from x.
     #[inline(always)]
     pub(crate) fn sample(&self, x: &Vector<S, D>) -> Sample<S, D> {
@@ -57,7 +65,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let mut surface_velocity = Vector::zeros();
         if self.moves {
             surface_velocity = self.surface_velocity(x);
-            if self.swelling != S::zero() {
+            if self.swells {
                 surface_velocity += unit(&shape_normal).1 * self.swelling;
             }
         }

@@ -70,16 +70,22 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
         let one = S::one();
         let steepest = at.inverse.iter().fold(S::zero(), |m, i| m.max(*i));
         let shortest = one / steepest;
-        // Scaled, so that high powers of thin axes stay within range; only the direction counts.
-        let normal = |slopes: Vector<S, D>| slopes.zip_map(at.inverse, |slope, inverse| slope * (inverse * shortest));
+        // A normal that is scaled by the shortest axis, so that high powers of thin ones stay within range, and a slack in units of that axis: brought to
+        // length one before they meet, for in fixed point a small slack times a short axis has no digits left.
+        let mut keep = |slopes: Vector<S, D>, slack: S| {
+            let normal = slopes.zip_map(at.inverse, |slope, inverse| slope * (inverse * shortest));
+            let length = S::norm(normal.as_slice());
+            if length > S::zero() {
+                keep(normal / length, slack * (shortest / length));
+            }
+        };
         let within = |gamma: &S| *gamma < one;
         let gamma = || at.u.iter().fold(S::zero(), |sum, u| sum + (*u * *u).powi(self.p));
         if let Some(gamma) = at.wall.then(gamma).filter(within) {
             let stride = at.step * steepest;
             let gap = one - gamma - self.bend(stride);
             if gap >= S::zero() {
-                let unit = shortest * S::from_f64(0.5) / self.powers();
-                keep(normal(at.u.map(|u| -slope(u, self.p))), gap * unit);
+                keep(at.u.map(|u| -slope(u, self.p)), gap * S::from_f64(0.5) / self.powers());
                 return;
             }
             // A step is longer than the bend allows: |delta_i| <= s, with s times the gauge of (1, 1, ...) what the
@@ -87,15 +93,15 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
             let room = (one - self.gauge(&at.u)) / root(at.u.iter().fold(S::zero(), |sum, _| sum + one), self.p);
             for i in 0..D {
                 let side = |sign: S| Vector::from_fn(|j, _| if i == j { sign } else { S::zero() });
-                keep(normal(side(-one)), room * shortest);
-                keep(normal(side(one)), room * shortest);
+                keep(side(-one), room);
+                keep(side(one), room);
             }
             return;
         }
         // The supporting half-space where the ray from the centre leaves the surface: the normal there is that at u.
         let largest = at.u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
         if !(largest > S::zero()) {
-            keep(first_axis(at.inverse[0]), -one);
+            keep(first_axis(one), -one);
             return;
         }
         let t = at.u / largest;
@@ -105,12 +111,11 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
             // Where the ray leaves it the tangent is off by what bends on the way back to there and within the step.
             let y = at.u / gauge;
             let bend = self.bend(at.step * steepest + S::norm((at.u - y).as_slice()));
-            let unit = shortest * S::from_f64(0.5) / self.powers();
-            keep(normal(y.map(|u| -slope(u, self.p))), (one - gauge) * shortest - bend * unit);
+            keep(y.map(|u| -slope(u, self.p)), one - gauge - bend * S::from_f64(0.5) / self.powers());
             return;
         }
         let slopes = t.map(|t| slope(t, self.p));
-        keep(normal(slopes), slopes.dot(&t) * (gauge - one) * (largest / gauge) * shortest);
+        keep(slopes, slopes.dot(&t) * (gauge - one) * (largest / gauge));
     }
 }
 

@@ -316,7 +316,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             let Some(entry) = left.next() else { break };
             let sample = entry.obstacle.sample(x);
             if let Some((reach, dt)) = reach {
-                let reach = if entry.obstacle.moves() { reach + sample.comes(dt) } else { reach };
+                let reach = if entry.obstacle.moves() { reach + entry.obstacle.comes(&sample, dt) } else { reach };
                 around.note_near(&entry.obstacle, sample.gamma, index, reach);
             }
             index += 1;
