@@ -6,7 +6,7 @@
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 
-use pliant_bench::bits;
+use pliant_bench::{Kind, bits};
 use pliant_core::scalar::Fixed;
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +29,8 @@ pub struct Wanted {
     pub ticks: u32,
     /// Ticks whose bits are compared.
     pub bits: u32,
+    /// Only scenes of this kind.
+    pub scene: Option<Kind>,
 }
 
 /// Instructions a tick, with so many obstacles.
@@ -161,7 +163,9 @@ pub fn measure(wanted: Wanted, mut each: impl FnMut(&str)) -> Result<Report, Bri
     let mut report = Report::default();
     for image in &IMAGES {
         let emulator = Emulator::find(image)?;
+        let scene = wanted.scene.map(|kind| format!("scene={}", kind.name()));
         let words = ["bench".into(), format!("ticks={}", wanted.ticks), format!("bits={}", wanted.bits)];
+        let words: Vec<String> = words.into_iter().chain(scene).collect();
         let mut process = emulator.start(COUNTING, &words, Stdio::piped())?;
         let lost = |error| BridgeError::Emulator(format!("what {} says was lost: {error}", image.machine));
         for line in process.stdout().map(BufReader::new).into_iter().flat_map(BufReader::lines) {

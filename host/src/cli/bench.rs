@@ -1,6 +1,8 @@
 //! `pliant bench`
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ValueEnum, value_parser};
+use pliant_bench::Kind;
 use serde_json::json;
 
 use super::{Finished, print_json, progress};
@@ -21,6 +23,13 @@ pub struct Args {
     /// Ticks in QEMU whose bits are compared with this machine's.
     #[arg(long, default_value = "10000", value_parser = value_parser!(u32).range(0..=1_000_000))]
     bits: u32,
+    /// In QEMU, only scenes of this kind.
+    #[arg(long, value_parser = PossibleValuesParser::new(Kind::ALL.map(Kind::name)).try_map(|name| kind(&name)))]
+    scene: Option<Kind>,
+}
+
+fn kind(name: &str) -> Result<Kind, &'static str> {
+    Kind::ALL.into_iter().find(|kind| kind.name() == name).ok_or("no such scene")
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -44,7 +53,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
         }
         Where::Qemu => {
             let bar = progress::bar(json);
-            let report = measure(Wanted { ticks: args.ticks, bits: args.bits }, |done| {
+            let report = measure(Wanted { ticks: args.ticks, bits: args.bits, scene: args.scene }, |done| {
                 bar.set_message(done.to_owned());
                 bar.tick();
             })?;
