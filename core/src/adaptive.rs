@@ -68,7 +68,7 @@
 //! | | 1e-9 | the least Gamma_k counts as this, so that f32 holds its square |
 //!
 //! ```
-//! use nalgebra::Vector2;
+//! use pliant_core::nalgebra::Vector2;
 //! use pliant_core::{Controller, Motion, Obstacle, ObstacleSpec, Region, RobotState, Settings};
 //! let mut controller: Controller<f64, 2, 2> = Controller::new(Motion::linear(Vector2::zeros(), 1.0).unwrap(), Settings::default());
 //! // A ball of 5 cm in a soft layer of 10 cm, which the robot passes on its way to the origin.

@@ -215,7 +215,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
     /// [`Status::NOT_FINITE`].
     ///
     /// ```
-    /// use nalgebra::Vector2;
+    /// use pliant_core::nalgebra::Vector2;
     /// use pliant_core::{Controller, Motion, RobotState, Settings, Status};
     /// let motion = Motion::linear(Vector2::zeros(), 1.0).unwrap();
     /// let mut controller: Controller<f32, 2, 4> = Controller::new(motion, Settings::default());

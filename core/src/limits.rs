@@ -20,7 +20,7 @@ use crate::{Scalar, Status, Vector, unit};
 /// them.
 ///
 /// ```
-/// use nalgebra::Vector2;
+/// use pliant_core::nalgebra::Vector2;
 /// use pliant_core::{Limits, Status};
 /// let limits = Limits { speed: 0.5, acceleration: Some(10.0), ..Limits::default() };
 /// let (u, status) = limits.apply(Vector2::new(3.0, 4.0), &Vector2::zeros(), 0.001);

@@ -64,7 +64,7 @@ impl<S: Scalar, const D: usize> LpvDs<S, D> {
     /// Which part fails, with its k.
     ///
     /// ```
-    /// use nalgebra::{Matrix2, Vector2};
+    /// use pliant_core::nalgebra::{Matrix2, Vector2};
     /// use pliant_core::{Component, LpvDs, ds::CertificateError};
     /// let part = |a| Component { log_weight: 0.0, mean: Vector2::zeros(), whitening: Matrix2::identity(), a };
     /// let stable = part(Matrix2::new(-1.0_f32, 0.5, -0.5, -1.0));

@@ -33,7 +33,7 @@ pub struct Component<S: Scalar, const D: usize> {
 /// Built by [`LpvDs::new`], driven only once [`LpvDs::certify`] has found the proof to hold.
 ///
 /// ```
-/// use nalgebra::{Matrix2, Vector2};
+/// use pliant_core::nalgebra::{Matrix2, Vector2};
 /// use pliant_core::{Component, LpvDs};
 /// let part = |x, a| Component { log_weight: 0.0, mean: Vector2::new(x, 0.0), whitening: Matrix2::identity() * 20.0, a };
 /// let (left, right) = (part(-0.5, Matrix2::new(-1.0_f64, 1.0, -1.0, -1.0)), part(0.5, -Matrix2::identity()));

@@ -101,7 +101,7 @@
 //! is E D E^-1.
 //!
 //! ```
-//! use nalgebra::{Matrix2, Vector2};
+//! use pliant_core::nalgebra::{Matrix2, Vector2};
 //! use pliant_core::{Controller, Motion, Obstacle, ObstacleSpec, RobotState, Settings};
 //!
 //! let motion = Motion::linear(Vector2::zeros(), 1.0).unwrap(); // f = -x

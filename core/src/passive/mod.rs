@@ -146,7 +146,7 @@ pub struct Interaction<S: Scalar, const D: usize> {
 /// Damping that knows where the flow goes. See the [module](self) for its equations.
 ///
 /// ```
-/// use nalgebra::Vector2;
+/// use pliant_core::nalgebra::Vector2;
 /// use pliant_core::passive::{Passive, PassiveSpec, Tank};
 /// let passive = Passive::new(PassiveSpec::default()).unwrap();
 /// let mut tank = Tank::new(1.0_f32, 2.0).unwrap(); // J
@@ -201,7 +201,7 @@ impl<S: Scalar> Passive<S> {
     /// D(u), N s/m, for a finite wanted velocity u, m/s.
     ///
     /// ```
-    /// use nalgebra::Vector3;
+    /// use pliant_core::nalgebra::Vector3;
     /// use pliant_core::passive::{Passive, PassiveSpec};
     /// let passive = Passive::new(PassiveSpec::default()).unwrap();
     /// let d = passive.damping(&Vector3::new(0.0, 0.5_f64, 0.0));

@@ -32,6 +32,8 @@ pub const MAX_POINTS: usize = 128;
 pub struct Scan<S: Scalar, const D: usize> {
     points: heapless::Vec<Vector<S, D>, MAX_POINTS>,
     radius: S,
+    /// The radius before ageing, m.
+    young: S,
     age: S,
 }
 
@@ -61,7 +63,7 @@ impl core::error::Error for ScanError {}
 impl<S: Scalar, const D: usize> Default for Scan<S, D> {
     /// No points.
     fn default() -> Self {
-        Self { points: heapless::Vec::new(), radius: S::MIN_AXIS, age: S::zero() }
+        Self { points: heapless::Vec::new(), radius: S::MIN_AXIS, young: S::MIN_AXIS, age: S::zero() }
     }
 }
 
@@ -70,7 +72,7 @@ impl<S: Scalar, const D: usize> Scan<S, D> {
     /// between them; plus the robot's own size.
     ///
     /// # Errors
-    /// Too many points, or the first one out of its range.
+    /// [`ScanError`]: more than [`MAX_POINTS`], the first point that is out of range, or a radius below [`Scalar::MIN_AXIS`] or above 100 m.
     ///
     /// ```
     /// use pliant_core::{Scan, Vector};
@@ -86,7 +88,7 @@ impl<S: Scalar, const D: usize> Scan<S, D> {
             return Err(ScanError::Radius);
         }
         let points = heapless::Vec::from_slice(points).map_err(|_| ScanError::Points)?;
-        Ok(Self { points, radius, age: S::zero() })
+        Ok(Self { points, radius, young: radius, age: S::zero() })
     }
 
     /// The points, m.
@@ -169,8 +171,9 @@ impl<S: Scalar, const D: usize> Scan<S, D> {
 
     /// The same for a time that may be long.
     pub(crate) fn carry(&mut self, age: S, ageing: &Ageing<S>) {
-        self.age = age.max(S::zero()).min(ageing.hold);
-        self.radius += ageing.growth * (self.age - ageing.time_to_live).max(S::zero());
+        // Who knows no age is taken for as old as can be; and it may come out of a table, where it was old.
+        self.age = if age <= ageing.hold { age.max(S::zero()) } else { ageing.hold };
+        self.radius = self.young + ageing.growth * (self.age - ageing.time_to_live).max(S::zero());
     }
 
     pub(crate) fn status(&self, ageing: &Ageing<S>) -> Status {

@@ -3,6 +3,7 @@
 extern crate std;
 
 use super::*;
+use crate::Table;
 use crate::scalar::Fixed;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -93,4 +94,18 @@ fn it_is_one_obstacle_by_the_length_of_the_mean_normal() {
     compare::<f32, 3>(4);
     compare::<Fixed, 2>(5);
     compare::<Fixed, 3>(6);
+}
+
+/// Who knows no age gives the oldest; and what comes out of a table does not age twice.
+#[test]
+fn an_age_counts_once_and_none_as_the_oldest() {
+    let ageing = Ageing { time_to_live: 0.2, growth: 0.02, hold: 1.0 };
+    let scan = || Scan::new(&[Vector::<f64, 2>::new(0.2, 0.0)], 0.05).unwrap();
+    let mut table: Table<f64, 2, 1> = Table::new();
+    for (age, radius) in [(0.0, 0.05), (-1.0, 0.05), (0.7, 0.06), (f64::INFINITY, 0.066), (f64::NAN, 0.066)] {
+        table.set_scan(scan(), age, &ageing);
+        assert!((table.scan().radius() - radius).abs() < 1e-12, "{age}: {}", table.scan().radius());
+        table.set_scan(table.scan().clone(), age, &ageing);
+        assert!((table.scan().radius() - radius).abs() < 1e-12, "{age} again: {}", table.scan().radius());
+    }
 }

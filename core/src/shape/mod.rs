@@ -45,7 +45,7 @@ pub const MAX_CURVATURE: u8 = 8;
 /// The shape of a hard core, in its own frame about the origin; lengths in metres.
 ///
 /// ```
-/// use nalgebra::{Vector2, Vector3};
+/// use pliant_core::nalgebra::{Vector2, Vector3};
 /// use pliant_core::{Obstacle, ObstacleError, ObstacleSpec, Shape};
 /// let pallet = Shape::Box { half: Vector2::new(0.6, 0.4), rounding: 0.02 };
 /// let pallet = Obstacle::new(ObstacleSpec { shape: pallet, ..ObstacleSpec::default() }).unwrap();

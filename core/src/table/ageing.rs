@@ -15,7 +15,7 @@ use crate::Scalar;
 /// below a tenth.
 ///
 /// ```
-/// use nalgebra::Vector2;
+/// use pliant_core::nalgebra::Vector2;
 /// use pliant_core::{Ageing, Obstacle, ObstacleSpec, Status, Table};
 /// let ageing = Ageing { time_to_live: 0.2, growth: 0.02, hold: 1.0 };
 /// let mut table: Table<f64, 2, 1> = Table::new();
