@@ -317,12 +317,13 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         self.previous = Vector::zeros();
     }
 
-    /// Changes the motion, with its attractor at rest where it was learnt; obstacles stay.
+    /// Changes the motion, with its attractor at rest where it was learnt; obstacles stay, and so does the last command, from which the
+    /// acceleration limit goes on ([`Controller::rest`] forgets it).
     pub fn set_motion(&mut self, motion: Motion<S, D>) {
         self.motion = Moving::new(motion);
     }
 
-    /// Changes the settings; [`Settings::check`] those that come from outside.
+    /// Changes the settings; [`Settings::check`] those that come from outside. Unchecked, what is out of its range may leave limits unkept and obstacles unseen.
     pub fn set_settings(&mut self, settings: Settings<S>) {
         self.settings = settings;
         self.table.rules_changed(&self.settings.ageing);

@@ -45,6 +45,17 @@ pub struct LinearDs<S: Scalar, const D: usize> {
     gain: S,
 }
 
+impl<S: Scalar, const D: usize> LinearDs<S, D> {
+    /// Where it ends, m.
+    pub fn attractor(&self) -> &Vector<S, D> {
+        &self.attractor
+    }
+    /// The gain, 1/s.
+    pub fn gain(&self) -> S {
+        self.gain
+    }
+}
+
 impl<S: Scalar, const D: usize> Motion<S, D> {
     /// Straight to `attractor` (m) at `gain` (1/s) times the distance.
     ///

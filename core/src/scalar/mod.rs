@@ -85,7 +85,8 @@ pub trait Scalar:
     /// Length and angle (as [`Scalar::atan2`]) of the point (x, y): for little more than the angle. Error of the
     /// length: 2e-16 (`f64`), 2e-7 (`f32`) of it, half a step and 4e-8 of it ([`Fixed`]).
     fn polar(x: Self, y: Self) -> (Self, Self);
-    /// A bound on the rounding error of one product of terms of this size.
+    /// A bound on the rounding error of one product of this size: in floats EPSILON size; in fixed point one step,
+    /// and one more for each whole unit of it, since its terms are wrong by a step each.
     fn rounding(size: Self) -> Self;
     /// Euclidean length, for components whose squares need not fit in fixed point.
     fn norm(components: &[Self]) -> Self;
@@ -102,11 +103,11 @@ pub trait Scalar:
     /// a_0 b_0 + a_1 b_1 + ..., as far as both go.
     fn dot(a: &[Self], b: &[Self]) -> Self;
 
-    /// The smaller of two numbers.
+    /// The smaller of two numbers; self where either is none.
     fn min(self, other: Self) -> Self {
         if other < self { other } else { self }
     }
-    /// The larger of two numbers.
+    /// The larger of two numbers; self where either is none.
     fn max(self, other: Self) -> Self {
         if other > self { other } else { self }
     }
