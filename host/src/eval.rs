@@ -208,10 +208,12 @@ fn region_name(region: Region) -> &'static str {
 }
 
 fn status_names(status: Status) -> String {
-    if status.is_empty() {
-        return "ok".into();
-    }
-    status.iter_names().map(|(name, _)| name.to_lowercase()).collect::<Vec<_>>().join("+")
+    if status.is_empty() { "ok".into() } else { flag_names(status).join("+") }
+}
+
+/// The name of every flag of a status, as people read it.
+pub(crate) fn flag_names(status: Status) -> Vec<String> {
+    status.iter_names().map(|(name, _)| name.to_lowercase()).collect()
 }
 
 #[cfg(test)]

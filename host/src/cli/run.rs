@@ -10,6 +10,7 @@ use super::verdict::Verdict;
 use super::{Finished, finite, print_json, progress};
 use crate::bridge::{BridgeError, Device};
 use crate::error::{Error, Outcome, counted};
+use crate::eval::flag_names;
 use crate::plot;
 use crate::scene::Scene;
 use crate::sim::{RunOptions, Runs, run_scene};
@@ -145,6 +146,8 @@ fn as_json(
                 "min_gamma": finite(r.nearest.gamma),
                 "min_gamma_with_margin": finite(r.nearest_margin.gamma),
                 "nearest": r.nearest.of,
+                "status": flag_names(r.status),
+                "infeasible": r.infeasible,
                 "time_to_goal_s": r.time_to_goal,
                 "velocities_crc32c": format!("{:08x}", r.checksum),
             })

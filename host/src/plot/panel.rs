@@ -164,7 +164,8 @@ impl<'a> Panel<'a> {
         !self.clearances.is_empty()
     }
     pub fn has_hidden(&self) -> bool {
-        self.trajectories.iter().any(|t| paths::parts(self.thick(t), &self.seen, &self.view).iter().any(|part| part.0))
+        let drawn = self.trajectories.iter().map(|t| paths::parts(&t.points, &self.seen, &self.view));
+        drawn.flatten().any(|(behind, _)| behind)
     }
 
     /// The names of both axes.
@@ -252,16 +253,24 @@ impl<'a> Panel<'a> {
                     under.extend(parts);
                 }
             }
-            if !still {
+            if !still && !self.is_projection() {
                 self.trajectories.iter().for_each(|t| draw(svg, &t.points, Stroke::Thin));
             }
             let reference: Vec<_> = self.options.reference.iter().map(pixel).collect();
             svg.path(thinned(&reference, 0.1), false, REFERENCE);
             under.iter().for_each(|(_, part)| draw(svg, part, Stroke::Thick));
-            if !still {
+            if !still && !self.is_projection() {
                 starts(svg);
             }
             self.draw_hard(svg, axes, name);
+            if !still && self.is_projection() {
+                for (behind, part) in
+                    self.trajectories.iter().flat_map(|t| paths::parts(&t.points, &self.seen, &self.view))
+                {
+                    draw(svg, part, if behind { Stroke::ThinDashed } else { Stroke::Thin });
+                }
+                starts(svg);
+            }
             draw_track(svg, axes, &self.aim, ATTRACTOR_TRACK, ATTRACTOR_HEAD);
             if edged {
                 over.iter().for_each(|(_, part)| paths::edge(svg, part, pixel, self.line()));

@@ -5,7 +5,7 @@ use nalgebra::{Point2, Vector3};
 use super::figure::{Pixel, Svg};
 use super::ink::thinned;
 use super::seen::Seen;
-use super::style::{BEHIND_CASING, LINE_COLOUR, casing, speed_colour};
+use super::style::{BEHIND_CASING, LINE_COLOUR, THIN_CASING, casing, speed_colour};
 use super::trajectory::TrajectoryPoint;
 use super::view::View;
 
@@ -18,6 +18,14 @@ pub(super) enum Stroke {
     Thin,
     /// Behind a core.
     Dashed,
+    /// The same of what is thin.
+    ThinDashed,
+}
+
+impl Stroke {
+    fn is_dashed(self) -> bool {
+        matches!(self, Self::Dashed | Self::ThinDashed)
+    }
 }
 
 /// The white edge of a path so many px wide.
@@ -41,16 +49,16 @@ pub(super) fn draw(
     let pixels: Vec<Pixel> = points.iter().map(|p| pixel(&p.position)).collect();
     let width = match stroke {
         Stroke::Thick | Stroke::Bare => line,
-        Stroke::Thin => 1.3,
+        Stroke::Thin | Stroke::ThinDashed => 1.3,
         Stroke::Dashed => 2.4,
     };
-    if speeds.is_none() && stroke != Stroke::Dashed {
+    if speeds.is_none() && !stroke.is_dashed() {
         let style = format!(
             r#"fill="none" stroke="{LINE_COLOUR}" stroke-width="{width}" stroke-linecap="round" stroke-linejoin="round""#
         );
         return svg.path(thinned(&pixels, 0.1), false, &style);
     }
-    let cap = if stroke == Stroke::Dashed { "butt" } else { "round" };
+    let cap = if stroke.is_dashed() { "butt" } else { "round" };
     let common = format!(r#"fill="none" stroke-width="{width}" stroke-linecap="{cap}""#);
     svg.group(&common, |svg| pieces(svg, points, &pixels, speeds, stroke));
 }
@@ -60,7 +68,7 @@ fn pieces(svg: &mut Svg, points: &[TrajectoryPoint], pixels: &[Pixel], speeds: O
     let (mut from, mut pieces) = (0, 0);
     for i in 1..pixels.len() {
         // A few pixels long at least, so that the file stays small.
-        let least = if stroke == Stroke::Dashed { 4.5 } else { 2.0 };
+        let least = if stroke.is_dashed() { 4.5 } else { 2.0 };
         if (pixels[i] - pixels[from]).norm() < least && i + 1 < pixels.len() {
             continue;
         }
@@ -68,9 +76,11 @@ fn pieces(svg: &mut Svg, points: &[TrajectoryPoint], pixels: &[Pixel], speeds: O
             speed_colour((points[(from + i) / 2].speed - low) / (high - low))
         });
         let piece = &pixels[from..=i];
-        if stroke != Stroke::Dashed || pieces % 2 == 0 {
-            if stroke == Stroke::Dashed {
-                svg.path(piece.iter().copied(), false, BEHIND_CASING);
+        if !stroke.is_dashed() || pieces % 2 == 0 {
+            match stroke {
+                Stroke::Dashed => svg.path(piece.iter().copied(), false, BEHIND_CASING),
+                Stroke::ThinDashed => svg.path(piece.iter().copied(), false, THIN_CASING),
+                _ => {}
             }
             svg.path(thinned(piece, 0.04), false, &format!(r#"stroke="{colour}""#));
         }

@@ -25,6 +25,8 @@ pub(super) const CLEARANCE_CASING: &str = r##"stroke="#ffffff" stroke-width="3.5
 pub(super) const CLEARANCE_END: &str = r##"fill="#c2185b""##;
 /// Around what is seen of a path through the core that is before it.
 pub(super) const BEHIND_CASING: &str = r##"fill="none" stroke="#ffffff" stroke-width="4""##;
+/// The same of what is thin.
+pub(super) const THIN_CASING: &str = r##"fill="none" stroke="#ffffff" stroke-width="2.4""##;
 pub(super) const START: &str = r##"fill="#ffffff" stroke="#15181c" stroke-width="1.8""##;
 pub(super) const ATTRACTOR: &str = r##"fill="#ffd43b" stroke="#15181c" stroke-width="1.1" stroke-linejoin="round""##;
 /// The line of a cross where a path ended in a core.

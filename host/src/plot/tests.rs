@@ -192,6 +192,29 @@ fn moments_are_those_at_which_robots_pass_what_moves() {
     assert_eq!(approach::moments(&still, &[straight()], 0.0), [approach::Moment { time: 0.0, tail: None }]);
 }
 
+/// Above and from the side, the panels' paths at other times and their starts are drawn after all cores, dashed where one hides them.
+#[test]
+fn in_space_what_moves_hides_neither_starts_nor_paths_at_other_times() {
+    let text = BALLS.replace("[[obstacle]]\nname = \"can\"", "[[obstacle]]\nvelocity = [0, 0, 0.01]\nname = \"can\"");
+    let scene = Scene::parse("s.toml", &text, "".as_ref()).unwrap();
+    let options = Options { clearances: false, ..Options::default() };
+    let figure = scene_figure(&scene, &[straight()], &options).unwrap();
+    // One piece a panel, without the legend's.
+    let panels: Vec<&str> = figure.svg().split("id=\"panel").skip(1).collect();
+    assert_eq!(panels.len(), 8);
+    for panel in panels {
+        let panel = panel.split("id=\"legend").next().unwrap();
+        let first = |what: &str| panel.find(what).unwrap_or_else(|| panic!("no {what}"));
+        let starts = first(style::START);
+        let cores: Vec<usize> = panel.match_indices(style::CORE).map(|(at, _)| at).take(2).collect();
+        let thin = first("fill=\"none\" stroke-width=\"1.3\" stroke-linecap=");
+        assert!(cores.iter().all(|core| *core < starts && *core < thin), "{cores:?} {thin} {starts}");
+    }
+    assert!(figure.svg().contains(style::THIN_CASING) && figure.svg().contains("path behind a core"));
+    let apart = scene_figure(&scene, &[], &options).unwrap();
+    assert!(!apart.svg().contains(style::THIN_CASING));
+}
+
 /// Mean speed (m/s) where two soft layers overlap, with layers that give and with layers that are not there.
 #[test]
 fn the_pair_slows_the_robot_in_its_overlap() {

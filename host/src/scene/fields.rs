@@ -103,8 +103,8 @@ pub(super) const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "obstacle.layer",
-        "the soft layer's thickness along the axes (of a polygon, before the edge nearest to its centre: elsewhere it is as thick or thicker), in m, \
-         0 or more; no soft semi-axis beyond 100 times the hard one, of a wall below a hundredth",
+        "the soft layer's thickness along the axes (of a polygon, as seen from its centre: as thick as asked where the boundary is nearest to the \
+         centre, in proportion thicker elsewhere), in m, 0 or more; no soft semi-axis beyond 100 times the hard one, of a wall below a hundredth",
     ),
     ("obstacle.curvature", "a whole number from 1 (ellipsoid, the default) to 8 (nearly a box); only with `ellipsoid`"),
     (

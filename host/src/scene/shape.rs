@@ -64,8 +64,8 @@ impl Shape {
         }
     }
 
-    /// What soft layers and growth are measured by, m: half of the extent along each axis; of a polygon, which is scaled by one factor, for
-    /// both axes how far its nearest edge is from the origin, so that no edge moves less.
+    /// What growth is measured by, m: half of the extent along each axis; of a polygon, which is scaled by one factor, for both axes how far the
+    /// line of its nearest edge is from the origin, so that no edge moves less.
     pub(super) fn measure(&self) -> Vector3<f64> {
         match self {
             Self::Polygon { vertices } => {
@@ -76,7 +76,20 @@ impl Shape {
         }
     }
 
-    /// The least of these, m.
+    /// What a layer is measured by, m: half of the extent along each axis; of a polygon, for both axes how far its boundary is from the origin
+    /// where it is nearest. An edge's line would not do: one that passes near the origin, as a notch's may, would make the layer many times as
+    /// thick everywhere else.
+    pub(super) fn layered(&self) -> Vector3<f64> {
+        match self {
+            Self::Polygon { vertices } => {
+                let nearest = edges(vertices).map(|(from, to)| apart(from, to)).fold(f64::INFINITY, f64::min);
+                Vector3::new(nearest, nearest, 0.0)
+            }
+            _ => self.extent(),
+        }
+    }
+
+    /// The least of what [growth](Self::measure) is measured by, m.
     pub(super) fn least(&self) -> f64 {
         self.measure().iter().copied().filter(|a| *a > 0.0).fold(f64::INFINITY, f64::min)
     }
@@ -154,6 +167,13 @@ pub(super) fn edges(vertices: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f
 /// Twice the area of the triangle of an edge and the origin: above zero if the edge goes counter-clockwise round it.
 pub(super) fn turn([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
     ax * by - ay * bx
+}
+
+/// How far an edge, from corner to corner, is from the origin.
+fn apart([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
+    let (ex, ey) = (bx - ax, by - ay);
+    let along = (-(ax * ex + ay * ey) / (ex * ex + ey * ey)).clamp(0.0, 1.0);
+    (ax + along * ex).hypot(ay + along * ey)
 }
 
 /// How far an edge's line passes from the origin; below zero on the wrong side.

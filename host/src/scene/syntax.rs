@@ -54,13 +54,26 @@ fn explain(source: &Source<'_>, error: &toml::de::Error) -> SceneError {
         let problem = "is missing, and there is no default for it";
         return source.error(SceneErrorKind::Missing, &field, span, problem);
     }
-    let problem = message
+    let written = source.text.get(span.clone()).unwrap_or_default();
+    let wants_number = ["expected f64", "expected i64", "expected a number"].iter().any(|w| message.contains(w));
+    if message.contains("number overflowed") || (message.contains("as i128") && wants_number) {
+        let size = if written.starts_with('-') { "small" } else { "large" };
+        return source.error(SceneErrorKind::Value, &field, span.clone(), format!("{written} is too {size}"));
+    }
+    let mut problem = message
         .trim_end()
         .replace("expected f64", "expected a number")
         .replace("expected i64", "expected a whole number")
         .replace("expected a sequence", "expected an array");
+    let number = message.contains("type: integer") || message.contains("type: floating point");
+    if number && message.contains("expected a sequence") && FOR_EACH.contains(&field.as_str()) {
+        problem += &format!("; did you mean [{written}, {written}] (3-D: [{written}, {written}, {written}])?");
+    }
     source.error(SceneErrorKind::Type, &field, span, problem)
 }
+
+/// Keys with one number for each dimension that may well be the same for all.
+const FOR_EACH: [&str; 4] = ["obstacle.margin", "obstacle.soft", "obstacle.shape.ellipsoid", "obstacle.shape.box"];
 
 /// The known key that `name` was most likely meant to be.
 fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {

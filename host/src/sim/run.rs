@@ -1,6 +1,7 @@
 //! A scene from every one of its starts.
 
 use nalgebra::Vector3;
+use pliant_core::Status;
 use pliant_protocol::message::{Mode, Region, Statistics};
 use pliant_protocol::{ToDevice, checksum};
 
@@ -53,6 +54,12 @@ pub struct Run {
     pub ticks: u64,
     /// Ticks the device was due and did not compute.
     pub missed: u64,
+    /// All that the commands' status said.
+    pub status: Status,
+    /// Commands of which it said [`Status::INFEASIBLE`].
+    pub infeasible: u64,
+    /// Those of them that came before the robot had been in any core or its safety factor.
+    pub before_entry: u64,
     /// Milliseconds in which this host came too late to send a state in time.
     pub host_late: u64,
     /// What came nearest, by the scene's true geometry in f64: hard cores as they are, without their safety factors.
@@ -219,6 +226,9 @@ impl<'a> Log<'a> {
             reached: false,
             ticks: 0,
             missed: 0,
+            status: Status::empty(),
+            infeasible: 0,
+            before_entry: 0,
             host_late: 0,
             nearest: Nearest::NOTHING,
             nearest_margin: Nearest::NOTHING,
@@ -243,6 +253,11 @@ impl<'a> Log<'a> {
             return Err(BridgeError::Stopped { device: device.into(), mode: command.mode });
         }
         self.run.ticks += 1;
+        let status = Status::from_bits_truncate(command.status);
+        self.run.status |= status;
+        let infeasible = status.contains(Status::INFEASIBLE);
+        self.run.infeasible += u64::from(infeasible);
+        self.run.before_entry += u64::from(infeasible && !self.run.nearest_margin.touched());
         self.bits.extend(command.velocity.iter().flat_map(|v| v.to_bits().to_le_bytes()));
         self.run.round_trips.extend(rtt);
         Ok(())

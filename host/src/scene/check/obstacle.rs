@@ -140,7 +140,7 @@ impl Check<'_> {
             }
             ("obstacle.soft", ratio)
         } else {
-            let hard = shape.measure();
+            let hard = shape.layered();
             let layer =
                 file.layer.as_ref().map_or(Ok(0.0), |l| self.number(l, "obstacle.layer", From(0.0), f64::MAX))?;
             let soft = hard.map(|a| if wall { (a - layer).max(0.0) } else { a + layer });
@@ -150,9 +150,9 @@ impl Check<'_> {
             let problem = if wall {
                 "leaves less than a hundredth of the free space without soft layer".to_owned()
             } else if let (Shape::Polygon { .. }, "obstacle.layer") = (shape, field) {
-                let nearest = six_digits(shape.least());
+                let nearest = six_digits(shape.layered().x);
                 format!(
-                    "makes the polygon, whose nearest edge is {nearest} m from its centre, {:.4e} times as large",
+                    "makes the polygon, whose boundary comes within {nearest} m of its centre, {:.4e} times as large",
                     ratio.max()
                 )
             } else {

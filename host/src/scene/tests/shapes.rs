@@ -87,8 +87,8 @@ const WRONG: &[Case] = &[
     (POLYGON, "center =", "wall = true\nsoft = [0.08, 0.04]\ncenter =", 8, "obstacle.soft", "such as [0.05, 0.04]"),
     (POLYGON, "center =", "margin = [1.0, 1.2]\ncenter =", 7, "obstacle.margin", "is 1 along one axis and 1.2 along the other"),
     (POLYGON, "center =", "margin = [1.0, 1.2]\ncenter =", 7, "obstacle.margin", "such as [1.2, 1.2]"),
-    (POLYGON, "center =", "layer = 1.8\ncenter =", 7, "obstacle.layer", "nearest edge is 0.0178885 m from its centre, 1.0162e2 times"),
-    (POLYGON, "center =", "wall = true\nlayer = 0.0178\ncenter =", 8, "obstacle.layer", "less than a hundredth"),
+    (POLYGON, "center =", "layer = 2.0\ncenter =", 7, "obstacle.layer", "comes within 0.02 m of its centre, 1.0100e2 times"),
+    (POLYGON, "center =", "wall = true\nlayer = 0.0199\ncenter =", 8, "obstacle.layer", "less than a hundredth"),
     // walls
     (ROOM, "wall = true", "wall = \"yes\"", 8, "obstacle.wall", "expected a boolean"),
     (ROOM, "[-0.3, 0.1]", "[-0.6, 0.1]", 4, "start.position", "outside the free space of the wall \"room\""),
@@ -195,28 +195,55 @@ fn what_grows_or_shrinks_is_extrapolated_on_the_safe_side() {
     }
 }
 
+/// A star, whose notches' edges point past its centre, and the notched polygon above.
+const OUTLINES: [&str; 2] = [
+    "[[0.14, 0.0], [0.053, 0.038], [0.043, 0.133], [-0.02, 0.062], [-0.113, 0.082], \
+     [-0.065, 0.0], [-0.113, -0.082], [-0.02, -0.062], [0.043, -0.133], [0.053, -0.038]]",
+    "[[0.1, 0.0], [-0.06, 0.08], [-0.02, 0.0], [-0.06, -0.08]]",
+];
+
+/// An obstacle with this outline and layer, or a wall, whose inside then holds the start and the goal.
+fn layered(outline: &str, wall: bool, layer: f64) -> Scene {
+    let place = if wall { "[0.2, 0.1]" } else { "[0.0, 0.0]" };
+    parse(&format!(
+        "ds.linear = {{ attractor = [0.2, 0.1], gain = 1.0 }}\n[[start]]\nposition = [0.201, 0.1]\n[[obstacle]]\nname = \"p\"\n\
+         shape = {{ polygon = {outline} }}\nwall = {wall}\nlayer = {layer:?}\ncenter = {}\n",
+        if wall { place } else { "[-3.0, 0.0]" }
+    ))
+    .unwrap()
+}
+
+/// How thick the layer is from the centre outwards, in 3600 directions and towards each corner: the least and the largest.
+fn seen_from_the_centre(scene: &Scene) -> (f64, f64) {
+    let o = scene.obstacles()[0].at(0.0);
+    let Shape::Polygon { vertices } = &o.shape else { panic!("a polygon") };
+    let corners = vertices.iter().map(|[x, y]| y.atan2(*x));
+    let ways = (0..3600).map(|i| f64::from(i) * std::f64::consts::TAU / 3600.0).chain(corners);
+    let thickness = |way: f64| {
+        let direction = Vector3::new(way.cos(), way.sin(), 0.0);
+        (o.surface(&direction) - o.soft_surface(&direction)).norm()
+    };
+    ways.map(thickness).fold((f64::INFINITY, 0.0), |(least, most), t| (t.min(least), t.max(most)))
+}
+
 #[test]
-fn a_polygons_layer_is_nowhere_thinner_than_it_is_said_to_be() {
-    let star = "[[0.14, 0.0], [0.053, 0.038], [0.043, 0.133], [-0.02, 0.062], [-0.113, 0.082], \
-        [-0.065, 0.0], [-0.113, -0.082], [-0.02, -0.062], [0.043, -0.133], [0.053, -0.038]]";
-    let (from, to) = (POLYGON.find("[\n").unwrap(), POLYGON.find("] }").unwrap());
-    let star = format!("{}{star}{}", &POLYGON[..from], &POLYGON[to + 1..]);
-    for (text, wall) in [(&star, false), (&star, true), (&POLYGON.to_owned(), false), (&POLYGON.to_owned(), true)] {
-        // A wall has to hold the start and the goal.
-        let text = text.replace("[0.4, 0.4]", if wall { "[0.3, 0.1]" } else { "[0.4, 0.4]" });
-        let text = text.replace(
-            "attractor = [0.0, 0.0]",
-            if wall { "attractor = [0.301, 0.1]" } else { "attractor = [0.0, 0.0]" },
-        );
-        let scene = parse(&text.replace("center =", &format!("wall = {wall}\nlayer = 0.01\ncenter ="))).unwrap();
-        let o = scene.obstacles()[0].at(0.0);
-        let ring = |at: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| -> Vec<Vector3<f64>> {
-            let way = |i: u32| f64::from(i) * std::f64::consts::TAU / 3600.0;
-            (0..3600).map(|i| at(&Vector3::new(way(i).cos(), way(i).sin(), 0.0))).collect()
-        };
-        let (hard, soft) = (ring(&|d| o.surface(d)), ring(&|d| o.soft_surface(d)));
-        let thickness = |s: &Vector3<f64>| hard.iter().map(|h| (h - s).norm()).fold(f64::INFINITY, f64::min);
-        let least = soft.iter().map(thickness).fold(f64::INFINITY, f64::min);
-        assert!((0.01..0.0101).contains(&(least + 1e-9)), "{least} (wall: {wall})");
+fn a_polygons_layer_is_as_thick_as_asked_where_its_boundary_is_nearest_and_nowhere_thinner() {
+    for outline in OUTLINES {
+        for wall in [false, true] {
+            let (least, _) = seen_from_the_centre(&layered(outline, wall, 0.01));
+            assert!((0.01 - 1e-9..0.01 + 1e-6).contains(&least), "{least} (wall: {wall})");
+        }
+    }
+}
+
+/// The line of a notch's edge passes 3 cm from the centre of this room, the boundary nowhere within 30 cm.
+#[test]
+fn a_notch_does_not_thicken_a_rooms_layer() {
+    let room = "[[0.5, -0.5], [0.5, 0.5], [0.05, 0.5], [0.0, 0.3], [-0.05, 0.5], [-0.5, 0.5], [-0.5, -0.5]]";
+    for wall in [false, true] {
+        let (least, most) = seen_from_the_centre(&layered(room, wall, 0.05));
+        // In proportion: the corners are sqrt(0.5) m from the centre.
+        let proportion = 0.5f64.sqrt() / 0.3;
+        assert!((least - 0.05).abs() < 1e-6 && (most - 0.05 * proportion).abs() < 1e-6, "{least} to {most}");
     }
 }

@@ -30,6 +30,15 @@ const BAD: &[Case] = &[
     (GOOD, "[ds]\nlinear = { attractor = [0.0, 0.0], gain = 1.0 }\n", "", 1, "ds", "is missing"),
     (GOOD, "[[start]]\nposition = [0.37, 0.41]", "", 1, "start", "is missing"),
     (GOOD, "name = \"foam\"", "name = \"\"", 12, "obstacle.name", "empty"),
+    (GOOD, "margin = [1.0, 1.0]", "margin = 1.05", 18, "obstacle.margin", "expected an array; did you mean [1.05, 1.05] (3-D: [1.05, 1.05, 1.05])?"),
+    (GOOD, "stiffness = 1.6487", "soft = 1", 16, "obstacle.soft", "did you mean [1, 1]"),
+    // whole numbers that TOML has no room for
+    (GOOD, "gain = 1.0", "gain = 1000000000000000000000000", 2, "ds.linear.gain", "1000000000000000000000000 is too large"),
+    (GOOD, "gain = 1.0", "gain = 1000000000000000000000000000000000000000000", 2, "ds.linear.gain", "000 is too large"),
+    (GOOD, "0.37, 0.41", "-1000000000000000000000000000000000000000000, 0.41", 10, "start.position", "is too small"),
+    (GOOD, "curvature = 1", "curvature = 99999999999999999999", 17, "obstacle.curvature", "99999999999999999999 is too large"),
+    (GOOD, "angular_velocity = 0.0", "angular_velocity = 99999999999999999999", 20, "obstacle.angular_velocity", "is too large"),
+    (GOOD, "name = \"foam\"", "name = 99999999999999999999", 12, "obstacle.name", "expected a string"),
     // numbers
     (GOOD, "0.20, 0.21", "nan, 0.21", 14, "obstacle.center", "NaN is not a finite number"),
     (GOOD, "0.37, 0.41", "inf, 0.41", 10, "start.position", "inf is not a finite number"),
