@@ -104,3 +104,35 @@ fn no_emulator_outlives_its_run() {
     }
     panic!("QEMU {pids:?} is still there");
 }
+
+/// The report of the only run of a scene in lock-step.
+fn stepped(name: &str, scene: &str) -> Value {
+    let folder = std::env::temp_dir();
+    let path = folder.join(format!("pliant-{name}-{}.toml", std::process::id()));
+    std::fs::write(&path, scene).unwrap();
+    let ended = programs::run(&folder, ["run", path.to_str().unwrap(), "--stepped", "--headless", "--json"]).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    ended.json()["runs"][0].clone()
+}
+
+#[test]
+fn the_report_has_what_the_status_said() {
+    const GOAL: &str = "ds.linear = { attractor = [0.5, 0.0], gain = 1.0 }\ngoal.timeout = 3.0\n";
+    let says = |run: &Value, flag: &str| run["status"].as_array().unwrap().iter().any(|f| f == flag);
+
+    let alone = stepped("alone", &format!("{GOAL}[[start]]\nposition = [0.4, 0.0]\n"));
+    assert!(alone["infeasible"] == 0 && !says(&alone, "infeasible") && !says(&alone, "cluster"), "{alone}");
+
+    let pocket = "[[start]]\nposition = [-0.05, 0.0]\n\
+        [[obstacle]]\nname = \"top\"\nshape = { box = [0.15, 0.03] }\ncenter = [0.1, 0.15]\n\
+        [[obstacle]]\nname = \"bottom\"\nshape = { box = [0.15, 0.03] }\ncenter = [0.1, -0.15]\n\
+        [[obstacle]]\nname = \"back\"\nshape = { box = [0.03, 0.16] }\ncenter = [0.23, 0.0]\n";
+    let pocket = stepped("pocket", &format!("{GOAL}{pocket}"));
+    assert!(pocket["reached"] == false && pocket["infeasible"] == 0 && says(&pocket, "cluster"), "{pocket}");
+
+    let squeezed = "[[start]]\nposition = [-0.3, 0.01]\n\
+        [[obstacle]]\nname = \"piston\"\nshape = { box = [0.05, 0.3] }\ncenter = [0.2, 0.0]\nvelocity = [-0.2, 0.0]\n\
+        [[obstacle]]\nname = \"room\"\nwall = true\nshape = { box = [0.6, 0.29] }\ncenter = [0.0, 0.0]\n";
+    let squeezed = stepped("squeezed", &format!("{GOAL}{squeezed}"));
+    assert!(squeezed["infeasible"].as_u64().unwrap() > 0 && says(&squeezed, "infeasible"), "{squeezed}");
+}
