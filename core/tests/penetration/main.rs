@@ -214,5 +214,7 @@ fn each_part_of_the_search_is_needed() {
     drive::<Fixed, 3>(ROOM, 77_309_427_608, &mut tally);
     drive::<Fixed, 2>(ROOM, 73_014_473_984, &mut tally);
     drive::<Fixed, 3>(ROOM, 77_309_442_427, &mut tally);
+    // A room whose gauge is steeper than fixed point can say.
+    drive::<Fixed, 2>(ROOM, 73_014_484_898, &mut tally);
     assert!(tally.infeasible > 0);
 }
