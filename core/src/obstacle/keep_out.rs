@@ -67,7 +67,8 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     pub(crate) fn engulfs(&self, x: &Vector<S, D>, step: S, skin: S) -> Option<(Vector<S, D>, S)> {
         let u = self.scaled(x);
         let gamma = self.level(&u).0;
-        if !self.is_near(gamma, step + skin) {
+        // Where fixed point cannot tell how steep the gauge is, the surface is near.
+        if !self.is_near(gamma, step + skin) && self.slimmest <= S::MAX * S::from_f64(0.5) {
             return None;
         }
         let bend = step * self.slimmest;

@@ -120,8 +120,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.hard = lengths.map(|l| one / l);
         self.slimmest = self.hard.iter().fold(S::zero(), |m, x| m.max(*x)) * self.inner;
         // No body below 1 m is large enough for that, in any number.
-        let sharp = self.slimmest > S::MAX * S::from_f64(0.5);
-        if self.hard.iter().any(|inverse| *inverse < one) || self.blur > S::zero() || self.rim > one || sharp {
+        if self.hard.iter().any(|inverse| *inverse < one) || self.blur > S::zero() {
             self.blur_changed(&lengths);
         }
         self.pose_changed();
@@ -131,9 +130,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     #[inline(never)]
     fn blur_changed(&mut self, lengths: &Vector<S, D>) {
         self.blur = crate::guard::blur(lengths.iter().fold(S::zero(), |m, l| m.max(*l)));
-        // Where fixed point cannot tell how steep the gauge is, the surface is near.
-        let sharp = self.slimmest > S::MAX * S::from_f64(0.5);
-        self.rim = if sharp { S::from_f64(64.0) } else { S::one() + self.blur * self.slimmest };
+        self.rim = S::one() + self.blur * self.slimmest;
     }
 
     /// How the surface moves, and whether anything does.
