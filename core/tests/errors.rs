@@ -45,8 +45,8 @@ fn names(error: impl Error, words: &[&str]) {
 #[test]
 fn every_variant_says_something_of_its_own() {
     messages(
-        &every!(ObstacleError: Center, Rotation, Dimension, Axes, Curvature, Rounding, Vertices, SoftRatio, Margin,
-        Reference, Velocity, Spin, Growth),
+        &every!(ObstacleError: Center, Rotation, Dimension, Axes, Curvature, Rounding, Corners, Vertices, SoftRatio,
+        Margin, Reference, Velocity, Spin, Growth),
     );
     messages(&every!(SettingsError: Gain, Steering, Speed, Acceleration, Deceleration, Ageing, Guard));
     messages(&every!(PassiveError: LambdaAlong, LambdaAcross, Blend, Share, Energy, Capacity, RobotVelocity, Wanted,

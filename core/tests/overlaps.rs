@@ -41,7 +41,7 @@ fn exact<S: Scalar, const D: usize>(spec: &ObstacleSpec<S, D>) -> Option<Obstacl
         }
         Shape::Polygon(polygon) => {
             let corners: Vec<_> = polygon.vertices().iter().map(|v| v.map(|x| x.to_f64())).collect();
-            Shape::Polygon(pliant_core::shape::Polygon::new(&corners)?)
+            Shape::Polygon(pliant_core::shape::Polygon::new(&corners).ok()?)
         }
     };
     let rotation = spec.rotation.map(|x| x.to_f64());

@@ -32,7 +32,7 @@ fn corners(r: &mut ChaCha8Rng) -> Vec<[f64; 2]> {
                 [far * a.cos(), far * a.sin()]
             })
             .collect();
-        let usable = Polygon::new(&corners).is_some_and(|p| {
+        let usable = Polygon::new(&corners).is_ok_and(|p| {
             let spec = ObstacleSpec { shape: Shape::Polygon(p), ..ObstacleSpec::<f64, 2>::default() };
             Obstacle::new(spec).is_ok()
         });

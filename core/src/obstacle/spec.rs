@@ -76,6 +76,8 @@ pub enum ObstacleError {
     Curvature,
     /// The radius of edges is below [`Scalar::MIN_AXIS`] or larger than the body has room for.
     Rounding,
+    /// A polygon with fewer than three corners, or more than [`MAX_VERTICES`](crate::shape::MAX_VERTICES).
+    Corners,
     /// Not a polygon once round its origin, counter-clockwise and seen whole from there.
     Vertices,
     /// Not between 1 and 100, or not the same along both axes of a polygon.
@@ -105,6 +107,7 @@ impl core::fmt::Display for ObstacleError {
             Self::Rounding => {
                 "shape has a rounding below 0.1 mm (in fixed point 2 mm), or larger than the body has room for"
             }
+            Self::Corners => "shape is a polygon that has not 3 to 12 corners",
             Self::Vertices => {
                 "shape is not a polygon once round its origin, counter-clockwise and seen whole from there"
             }

@@ -288,7 +288,7 @@ fn polygon<S: Number, const D: usize>(near: i32, far: i32, random: &mut Random) 
         let distance: S = random.between(near, far);
         let _ = vertices.push([cos * distance, sin * distance]);
     }
-    Polygon::new(&vertices).map_or_else(|| Shape::ellipsoid(Vector::from_element(S::units(far))), Shape::Polygon)
+    Polygon::new(&vertices).map_or_else(|_| Shape::ellipsoid(Vector::from_element(S::units(far))), Shape::Polygon)
 }
 
 /// The obstacle; where its reference point does not fit, with its own; and where nothing does, a ball. All of it depends on the numbers alone.

@@ -156,7 +156,7 @@ impl PosedObstacle<'_> {
         Ok(ObstacleSpec {
             center: vector(&self.pose.center),
             rotation: square(rotation.matrix()),
-            shape: self.shape.to_core().ok_or_else(|| self.refused(ObstacleError::Vertices))?,
+            shape: self.shape.to_core().map_err(|error| self.refused(error))?,
             wall: o.wall,
             soft_ratio: vector(&o.soft_ratio),
             margin: vector(&o.margin),

@@ -1,8 +1,8 @@
 //! What an obstacle's hard core looks like.
 
 use nalgebra::Vector3;
-use pliant_core::Scalar;
 use pliant_core::shape::{self, Polygon};
+use pliant_core::{ObstacleError, Scalar};
 
 use super::convert::vector;
 
@@ -123,10 +123,14 @@ impl Shape {
         }
     }
 
-    /// The core's shape; none where a polygon has too few corners or too many, which no checked scene has.
-    pub(super) fn to_core<S: Scalar, const D: usize>(&self) -> Option<shape::Shape<S, D>> {
+    /// The core's shape.
+    ///
+    /// # Errors
+    ///
+    /// [`ObstacleError::Corners`] where a polygon has too few or too many, which no checked scene has.
+    pub(super) fn to_core<S: Scalar, const D: usize>(&self) -> Result<shape::Shape<S, D>, ObstacleError> {
         let number = S::from_f64;
-        Some(match self {
+        Ok(match self {
             Self::Ellipsoid { axes, curvature } => {
                 shape::Shape::Ellipsoid { axes: vector(axes), curvature: *curvature }
             }

@@ -87,9 +87,7 @@ fn shape<const D: usize>(wire: &Shape) -> Result<shape::Shape<f32, D>, DeviceErr
         Shape::Capsule { radius, half_length } => shape::Shape::Capsule { radius: *radius, half_length: *half_length },
         // Before its corners are counted: in space there is no number of them that would do.
         Shape::Polygon { .. } if D == 3 => return Err(DeviceError::Dimension),
-        Shape::Polygon { vertices } => {
-            shape::Shape::Polygon(Polygon::new(vertices).ok_or(DeviceError::OutOfRange(Field::Vertices))?)
-        }
+        Shape::Polygon { vertices } => shape::Shape::Polygon(Polygon::new(vertices)?),
     })
 }
 
@@ -107,7 +105,7 @@ impl From<ObstacleError> for DeviceError {
             ObstacleError::Velocity => Field::Velocity,
             ObstacleError::Spin => Field::AngularVelocity,
             ObstacleError::Rounding => Field::Rounding,
-            ObstacleError::Vertices => Field::Vertices,
+            ObstacleError::Corners | ObstacleError::Vertices => Field::Vertices,
             ObstacleError::Growth => Field::Growth,
         })
     }

@@ -81,12 +81,17 @@ impl<S: Scalar> Edge<S> {
 }
 
 impl<S: Scalar> Polygon<S> {
-    /// From its corners, counter-clockwise, m; `None` unless there are three to [`MAX_VERTICES`]. Whether they go
-    /// once round the origin and are all seen from there is checked by [`Obstacle::new`](crate::Obstacle::new):
-    /// [`ObstacleError::Vertices`].
-    pub fn new(vertices: &[[S; 2]]) -> Option<Self> {
-        let vertices = heapless::Vec::from_slice(vertices).ok()?;
-        (vertices.len() >= 3).then_some(Self { vertices })
+    /// From its corners, counter-clockwise, m.
+    ///
+    /// # Errors
+    ///
+    /// [`ObstacleError::Corners`] unless there are three to [`MAX_VERTICES`]. Whether they go once round the origin and are all seen from
+    /// there is checked by [`Obstacle::new`](crate::Obstacle::new): [`ObstacleError::Vertices`].
+    pub fn new(vertices: &[[S; 2]]) -> Result<Self, ObstacleError> {
+        match heapless::Vec::from_slice(vertices) {
+            Ok(vertices) if vertices.len() >= 3 => Ok(Self { vertices }),
+            _ => Err(ObstacleError::Corners),
+        }
     }
 
     /// The corners, counter-clockwise, m.

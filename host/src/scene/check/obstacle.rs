@@ -289,7 +289,9 @@ impl Check<'_> {
             ObstacleError::Growth => ("obstacle.growth", file.growth.as_ref().map(Spanned::span)),
             ObstacleError::Curvature => ("obstacle.curvature", file.curvature.as_ref().map(Spanned::span)),
             ObstacleError::Rounding => ("obstacle.shape.rounding", None),
-            ObstacleError::Dimension | ObstacleError::Axes | ObstacleError::Vertices => (shape.as_str(), None),
+            ObstacleError::Dimension | ObstacleError::Axes | ObstacleError::Corners | ObstacleError::Vertices => {
+                (shape.as_str(), None)
+            }
         };
         let problem = "is refused in single precision: it is too near to a limit";
         Err(self.error(Kind::Value, field, at.unwrap_or_else(|| file.shape.span()), problem))
