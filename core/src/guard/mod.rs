@@ -51,7 +51,7 @@ use core::cmp::Ordering;
 pub use program::{HalfSpace, Solution, nearest};
 use program::{allowed, least, nearest_of_least};
 
-use crate::obstacle::Outlook;
+use crate::obstacle::{Engulfed, Outlook};
 use crate::surroundings::Surroundings;
 use crate::table::Table;
 use crate::{Obstacle, Scalar, Vector};
@@ -221,13 +221,17 @@ impl<S: Scalar, const D: usize, const CAP: usize> Next<'_, S, D, CAP> {
         let mut out = HalfSpaces::new(speed);
         let mut leads = true;
         for (index, reach) in self.near {
-            let Some((normal, depth)) = table.at(*index).and_then(|o| o.engulfs(x, step, skin)) else { continue };
-            if depth > step {
-                return false;
+            let Some(engulfed) = table.at(*index).and_then(|o| o.engulfs(x, step, skin)) else { continue };
+            match engulfed {
+                Engulfed::Everything => return false,
+                Engulfed::HalfSpace { depth, .. } if depth > step => return false,
+                Engulfed::HalfSpace { normal, depth } => {
+                    let offset = depth / dt;
+                    leads &= normal.dot(likely) > offset;
+                    out.add(HalfSpace { normal, offset });
+                }
+                Engulfed::Nothing => {}
             }
-            let offset = depth / dt;
-            leads &= normal.dot(likely) > offset;
-            out.add(HalfSpace { normal, offset });
             // Cannot be full: it has the table's own capacity.
             let _ = reached.push((*index, *reach));
         }

@@ -18,6 +18,21 @@ pub(crate) struct Outlook<'a, S: Scalar, const D: usize> {
     pub share: S,
 }
 
+/// What of the displacements within a step is sure to end in a hard core.
+pub(crate) enum Engulfed<S: Scalar, const D: usize> {
+    /// All of them.
+    Everything,
+    /// Those with n.delta <= depth.
+    HalfSpace {
+        /// n, of unit length, world's frame.
+        normal: Vector<S, D>,
+        /// m
+        depth: S,
+    },
+    /// None is known to.
+    Nothing,
+}
+
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// Calls `keep(n, gap)` for half-spaces n.delta >= -gap (n of unit length, world's frame; gap in m) of
     /// displacements from a place that keep out of the hard core (a wall: inside).
@@ -59,30 +74,28 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     }
 
     /// None if its surface is farther from x than `step` (m), and a `skin` (m); or else what of the displacements from x that are no longer than the step is sure
-    /// to end in the hard core: all with n.delta <= depth (n of unit length, world's frame; depth in m, below -step where nothing is). Of an ellipsoid with p = 1
+    /// to end in the hard core. Of an ellipsoid with p = 1, a half-space:
     ///
     /// ```text
     /// Gamma(x + delta) <= Gamma(x) + grad Gamma(x).delta + (|delta|/shortest semi-axis)^2
     /// ```
-    pub(crate) fn engulfs(&self, x: &Vector<S, D>, step: S, skin: S) -> Option<(Vector<S, D>, S)> {
+    pub(crate) fn engulfs(&self, x: &Vector<S, D>, step: S, skin: S) -> Option<Engulfed<S, D>> {
         let u = self.scaled(x);
         let gamma = self.level(&u).0;
-        // Where fixed point cannot tell how steep the gauge is, the surface is near.
-        if !self.is_near(gamma, step + skin) && self.slimmest <= S::MAX * S::from_f64(0.5) {
+        // Where it is not known how steep the gauge is, the surface is near.
+        if self.is_steepness_known() && !self.is_near(gamma, step + skin) {
             return None;
         }
         let bend = step * self.slimmest;
         // Of what a step can lead through to the other side nothing is known.
         if !(self.plain && bend < S::one()) {
-            let twice = step + step;
-            let depth = if self.is_deeper(gamma, step) { twice } else { -twice };
-            return Some((self.spec.rotation.column(0).into_owned(), depth));
+            return Some(if self.is_deeper(gamma, step) { Engulfed::Everything } else { Engulfed::Nothing });
         }
         let (normal, unit) = self.steepened(&u);
         // At the centre it has no direction, but all the more depth.
         let inverse = S::one() / norm(&normal);
         let depth = (S::one() - gamma - bend * bend) * (S::from_f64(0.5) * unit * inverse);
-        Some((times(&self.spec.rotation, &(normal * inverse)), depth))
+        Some(Engulfed::HalfSpace { normal: times(&self.spec.rotation, &(normal * inverse)), depth })
     }
 
     /// t diag(hard), along the gradient of Gamma where t is along u, in units of which as many are a metre as `unit` says.
@@ -127,6 +140,11 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         })
     }
 
+    /// In fixed point the reciprocal of what is very thin is out of range.
+    fn is_steepness_known(&self) -> bool {
+        self.slimmest <= S::MAX * S::from_f64(0.5)
+    }
+
     /// May the hard surface be within `reach` (m) of a point with this Gamma?
     #[inline(always)]
     pub(crate) fn is_near(&self, gamma: S, reach: S) -> bool {
@@ -159,8 +177,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     pub(crate) fn is_deeper(&self, gamma: S, reach: S) -> bool {
         let one = S::one();
         let change = reach * self.slimmest;
-        // In fixed point the reciprocal of what is very thin is out of range.
-        if self.slimmest > S::MAX * S::from_f64(0.5) {
+        if !self.is_steepness_known() {
             false
         } else if self.spec.wall {
             let gauge = one + change;

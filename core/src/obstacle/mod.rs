@@ -59,7 +59,7 @@ pub use crate::shape::MAX_CURVATURE;
 pub use spec::{MAX_RATIO, MAX_SPEED, MIN_AXIS, ObstacleError, ObstacleSpec};
 
 pub(crate) use abreast::Abreast;
-pub(crate) use keep_out::Outlook;
+pub(crate) use keep_out::{Engulfed, Outlook};
 pub(crate) use sample::{Sample, SoftLayer};
 
 use crate::shape::{Body, Pieces, Shape, root};

@@ -197,13 +197,21 @@ fn engulfed<S: Scalar>(rounding: f64) -> (u32, u32) {
             tried += 1;
             // The steepest there is: what rounding of a place may do to the gauge.
             let slack = rounding * o.steepest().to_f64();
-            match seen {
-                None => assert!((before - 1.0).signum() == (after - 1.0).signum() || (after - 1.0).abs() < slack),
-                Some((n, depth)) if depth > S::from_f64(step) || n.dot(&delta.map(S::from_f64)) < depth => {
-                    held += 1;
-                    assert!(after < 1.0 + slack, "{o:?} {x} {delta}: {after}");
+            let ends_inside = match &seen {
+                None => {
+                    let stays = (before - 1.0).signum() == (after - 1.0).signum();
+                    assert!(stays || (after - 1.0).abs() < slack, "{o:?} {x} {delta}: {before}, {after}");
+                    false
                 }
-                Some(_) => {}
+                Some(Engulfed::Everything) => true,
+                Some(Engulfed::HalfSpace { normal, depth }) => {
+                    *depth > S::from_f64(step) || normal.dot(&delta.map(S::from_f64)) < *depth
+                }
+                Some(Engulfed::Nothing) => false,
+            };
+            if ends_inside {
+                held += 1;
+                assert!(after < 1.0 + slack, "{o:?} {x} {delta}: {after}");
             }
         }
     }
