@@ -156,7 +156,8 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         self.is_within(gamma, gauge - S::one())
     }
 
-    /// Is the surface farther than `distance` (m) from x, which is outside, also where it comes near twice as fast as at x?
+    /// Is the surface farther than `distance` (m) from x, which is outside? A convex core is no nearer than the tangent says; a round wall may
+    /// come nearer twice as fast as at x.
     #[cold]
     #[inline(never)]
     pub(crate) fn is_farther(&self, x: &Vector<S, D>, distance: S) -> bool {
@@ -164,7 +165,8 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let longest = S::one() / self.hard.iter().fold(S::MAX, |m, hard| m.min(*hard));
         // What rounding does to scaled coordinates of a large body: all are equally coarse in fixed point.
         let size = if S::FLOATS { u.iter().fold(S::zero(), |m, u| m.max(u.abs())) } else { S::one() };
-        let least = distance + distance + S::EPSILON * S::from_f64(8.0) * size * longest;
+        let curve = if self.is_round_wall() { distance } else { S::zero() };
+        let least = distance + curve + S::EPSILON * S::from_f64(8.0) * size * longest;
         // Beside a corner the nearest edge's tangent says less than there is.
         let gap = match self.body.distance(&self.spec.shape, &u) {
             Some(gap) => Some(gap * longest),

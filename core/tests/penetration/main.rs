@@ -214,6 +214,8 @@ fn each_part_of_the_search_is_needed() {
     drive::<Fixed, 3>(ROOM, 77_309_427_608, &mut tally);
     drive::<Fixed, 2>(ROOM, 73_014_473_984, &mut tally);
     drive::<Fixed, 3>(ROOM, 77_309_442_427, &mut tally);
+    // A box that drives the robot along no more slowly than that can go: the way out leads by hardly more than rounding.
+    drive::<Fixed, 2>(MOVING, 47_244_654_036, &mut tally);
     // A room whose gauge is steeper than fixed point can say.
     drive::<Fixed, 2>(ROOM, 73_014_484_898, &mut tally);
     assert!(tally.infeasible > 0);
