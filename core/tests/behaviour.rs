@@ -3,8 +3,9 @@
 
 use pliant_core::{
     Ageing, Controller, Fixed, Guard, Limits, Motion, Obstacle, ObstacleSpec, RobotState, Scalar, Scan, Settings,
-    Shape, Status, Vector, rotation,
+    Shape, Status, SteeringPolicy, Vector, rotation,
 };
+use rand::{Rng, SeedableRng};
 
 type V = Vector<f64, 2>;
 
@@ -368,4 +369,93 @@ fn a_flat_ellipsoid_is_left_across() {
     drive::<f64>();
     drive::<f32>();
     drive::<Fixed>();
+}
+
+/// Whatever settings are given: those in force are within their ranges, and so is what they lead to.
+#[test]
+fn settings_out_of_range_lead_to_nothing_out_of_range() {
+    fn drive<S: Scalar>(hostile: &[S]) {
+        let s = S::from_f64;
+        let v = |x: f64, y: f64| Vector::<S, 2>::new(s(x), s(y));
+        let usual = Settings::<S>::default();
+        let mut seen = 0;
+        for x in hostile {
+            let of = |limits: Limits<S>| Settings { limits, ..usual };
+            let given = [
+                of(Limits { speed: *x, ..usual.limits }),
+                of(Limits { acceleration: Some(*x), ..usual.limits }),
+                of(Limits { deceleration: *x, ..usual.limits }),
+                Settings { gain: *x, ..usual },
+                Settings { steering: SteeringPolicy::WithFlow { beta: *x }, ..usual },
+                Settings { steering: SteeringPolicy::Fixed { cos: *x, sin: *x }, ..usual },
+                Settings { guard: Some(Guard { approach: *x }), ..usual },
+                Settings { ageing: Ageing { time_to_live: *x, ..usual.ageing }, ..usual },
+                Settings { ageing: Ageing { growth: *x, ..usual.ageing }, ..usual },
+                Settings { ageing: Ageing { hold: *x, ..usual.ageing }, ..usual },
+            ];
+            for settings in given {
+                seen += u32::from(settings.check().is_err());
+                let mut controller: Controller<S, 2, 4> =
+                    Controller::new(Motion::linear(v(0.0, 0.0), S::one()).unwrap(), usual);
+                controller.set_settings(settings);
+                assert_eq!(controller.settings().check(), Ok(()), "{settings:?}");
+                let ball = ObstacleSpec { center: v(0.3, 0.0), ..ObstacleSpec::default() };
+                controller.upsert(1, Obstacle::new(ball).unwrap(), S::zero()).unwrap();
+                let mut x = v(0.4, 0.01);
+                for _ in 0..300 {
+                    let command = controller.tick(&RobotState::new(x).unwrap(), s(0.001));
+                    let most = controller.settings().limits.speed + s(1e-5);
+                    assert!(command.velocity.iter().all(|u| u.abs() <= most), "{settings:?}: {command:?}");
+                    assert!(command.gamma >= S::one(), "{settings:?}: {command:?}");
+                    x += command.velocity * s(0.001);
+                }
+            }
+        }
+        assert!(seen > 20, "{seen}");
+    }
+    drive(&[f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 0.0, 1e300]);
+    drive(&[f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 0.0, 1e30]);
+    drive(&[Fixed::MAX, Fixed::from_f64(-2048.0), Fixed::from_f64(-1.0), Fixed::from_f64(0.0)]);
+}
+
+/// In fixed point the modulation is what it is in f64 beside bodies of millimetres, also of a fast motion: its products do not leave the range there.
+#[test]
+fn thin_bodies_are_no_less_exact_in_fixed_point() {
+    let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+    let grid = |x: f64| (x * 1_048_576.0).round() / 1_048_576.0;
+    let mut compared = 0;
+    for _ in 0..20_000 {
+        let short = r.random_range(0.0021..0.02);
+        let axes = [short, short * 10f64.powf(r.random_range(0.0..1.5)), short * 10f64.powf(r.random_range(0.0..1.0))];
+        let fast = r.random_range(0.25..5.0);
+        let goal = [0; 3].map(|_| grid(r.random_range(-1.0..1.0) * fast));
+        let way = [0; 3].map(|_| r.random_range(-1.0..1.0f64));
+        let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let far = 1.0 + 10f64.powf(r.random_range(-2.0..1.0));
+        let at = [0, 1, 2].map(|i| grid(axes[i] * way[i] / length * far));
+        let angle: f64 = r.random_range(-1.5..1.5);
+        fn modulated<S: Scalar>(axes: [f64; 3], goal: [f64; 3], at: [f64; 3], angle: f64) -> (Vector<f64, 3>, f64) {
+            let v = |v: [f64; 3]| Vector::<S, 3>::from(v.map(S::from_f64));
+            let mut controller: Controller<S, 3, 1> =
+                Controller::new(Motion::linear(v(goal), S::one()).unwrap(), Settings::default());
+            let turn = rotation::spatial([angle.cos(), angle.sin() * 0.6, angle.sin() * -0.8, 0.0]).unwrap();
+            let spec = ObstacleSpec {
+                shape: Shape::ellipsoid(v(axes.map(|a| (a * 1_048_576.0).round() / 1_048_576.0))),
+                rotation: turn.map(S::from_f64),
+                ..ObstacleSpec::default()
+            };
+            controller.upsert(1, Obstacle::new(spec).unwrap(), S::zero()).unwrap();
+            let stages = controller.evaluate(&RobotState::new(v(at)).unwrap());
+            (stages.modulated.map(S::to_f64), stages.gamma.to_f64())
+        }
+        let (exact, gamma) = modulated::<f64>(axes, goal, at, angle);
+        let (fixed, _) = modulated::<Fixed>(axes, goal, at, angle);
+        if gamma < 1.01 {
+            continue;
+        }
+        compared += 1;
+        let error = (fixed - exact).norm();
+        assert!(error <= 1e-3 + 5e-3 * exact.norm(), "{error}: {exact} {fixed}, {axes:?} {goal:?} {at:?} {angle}");
+    }
+    assert!(compared > 10_000, "{compared}");
 }

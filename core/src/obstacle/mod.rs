@@ -106,6 +106,8 @@ pub struct Obstacle<S: Scalar, const D: usize> {
     swelling: S,
     /// 1/radius of the largest ball inside, 1/m.
     slimmest: S,
+    /// In fixed point, of what is thin: how many times larger it is looked at, and the inverse.
+    enlarged: Option<(S, S)>,
     /// By how much the surface counts as nearer to the guard for the body's size, m; and the gauge so far out.
     blur: S,
     rim: S,
@@ -142,6 +144,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// # Errors
     /// The first field that is out of its range, as [`ObstacleError`] states it.
     pub fn new(mut spec: ObstacleSpec<S, D>) -> Result<Self, ObstacleError> {
+        const { assert!(D == 2 || D == 3, "obstacles are in the plane or in space") };
         spec.check()?;
         // Now, for the first turn would do it, and the surface jump.
         spec.rotation = rotation::righted(&spec.rotation);
@@ -167,6 +170,7 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             swelling: S::zero(),
             swells: false,
             slimmest: S::one(),
+            enlarged: None,
             blur: S::zero(),
             rim: S::one(),
             young: nothing,

@@ -3,6 +3,20 @@
 use super::Obstacle;
 use crate::{Matrix, Scalar, Vector, is_zero, rotation};
 
+/// Where scaled coordinates are steeper than this, 1/m, the products of a normal or an arm with velocities may leave fixed point's range.
+const STEEP: f64 = 16.0;
+
+/// By a power of two, for that is exact.
+fn enlarged<S: Scalar>(steepest: S) -> Option<(S, S)> {
+    let half = S::from_f64(0.5);
+    let (mut larger, mut smaller, mut steep) = (S::one(), S::one(), steepest);
+    // The steepest there is, 500 per metre and what shrinks below that, is left far behind.
+    while steep > S::from_f64(STEEP) && smaller > S::from_f64(1.0 / 16384.0) {
+        (larger, smaller, steep) = (larger + larger, smaller * half, steep * half);
+    }
+    (smaller < S::one()).then_some((larger, smaller))
+}
+
 impl<S: Scalar, const D: usize> Obstacle<S, D> {
     /// Does it move, turn or grow?
     #[inline(always)]
@@ -99,11 +113,12 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             self.spec.growth = self.spec.growth.max(zero);
             self.set_speeds();
         }
-        let size = self.extent.map(|a| (a + self.grown) / a);
+        // Lengths, for in fixed point how many times as large it is may be out of range.
+        let size = self.per_metre.zip_map(&self.extent, |more, a| (a + self.grown) * more);
         let wall = self.spec.wall;
-        let scale = |ratio: &Vector<S, D>| size.zip_map(ratio, |g, ratio| if wall { g / ratio } else { g * ratio });
-        self.young = self.unit.component_mul(&scale(&self.spec.margin));
-        self.soft = self.unit.zip_map(&scale(&self.spec.soft_ratio), |l, g| one / (l * g));
+        let scaled = |ratio: &Vector<S, D>| size.zip_map(ratio, |l, ratio| if wall { l / ratio } else { l * ratio });
+        self.young = scaled(&self.spec.margin);
+        self.soft = scaled(&self.spec.soft_ratio).map(|l| one / l);
         // Ageing makes the layer thinner, so what is found without it holds.
         self.hard = self.young.map(|l| one / l);
         self.soft_until = self.soft_reach();
@@ -118,6 +133,9 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
             if wall { (l - aged * more).max(l * S::from_f64(0.1)) } else { l + aged * more }
         });
         self.hard = lengths.map(|l| one / l);
+        if !S::FLOATS {
+            self.enlarged = enlarged(self.steepest());
+        }
         self.slimmest = self.hard.iter().fold(S::zero(), |m, x| m.max(*x)) * self.inner;
         // No body below 1 m is large enough for that, in any number.
         if self.hard.iter().any(|inverse| *inverse < one) || self.blur > S::zero() {

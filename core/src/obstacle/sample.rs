@@ -10,7 +10,7 @@ pub(crate) struct Sample<S: Scalar, const D: usize> {
     /// The shape's normal, of any length that is neither huge nor tiny; zero at the centre. Of a wall it points into the wall, for there it
     /// is that leads away from the reference point: the modulation does not know one side from the other.
     pub outward: Vector<S, D>,
-    /// r, from the reference point to x, m.
+    /// Along r, from the reference point to x; in m but for what is thin in fixed point.
     pub arm: Vector<S, D>,
     /// m/s, growth included.
     pub surface_velocity: Vector<S, D>,
@@ -25,7 +25,7 @@ pub(crate) struct SoftLayer<S: Scalar, const D: usize> {
     pub fade: S,
     /// n, the unit normal; of a wall inwards.
     pub normal: Vector<S, D>,
-    /// r, from the reference point to x, m.
+    /// Along r, from the reference point to x; in m but for what is thin in fixed point.
     pub arm: Vector<S, D>,
     /// The obstacle's first axis in the world's frame.
     pub first_axis: Vector<S, D>,
@@ -61,7 +61,12 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
     pub(crate) fn sample(&self, x: &Vector<S, D>) -> Sample<S, D> {
         let away = x - self.spec.center;
         let (gamma, direction) = self.level(&times(&self.scaling, &away));
-        let shape_normal = transposed_times(&self.scaling, &direction);
+        // In fixed point what is thin is looked at larger: its normal is too long, and the arm too short, for the range of their products.
+        let enlarged = self.enlarged.filter(|_| !S::FLOATS);
+        let shape_normal = match enlarged {
+            Some((_, smaller)) => transposed_times(&(self.scaling * smaller), &direction),
+            None => transposed_times(&self.scaling, &direction),
+        };
         let mut surface_velocity = Vector::zeros();
         if self.moves {
             surface_velocity = self.surface_velocity(x);
@@ -72,6 +77,9 @@ impl<S: Scalar, const D: usize> Obstacle<S, D> {
         let mut arm = away - self.offset;
         if self.leans {
             arm -= self.lean * self.leaning(&shape_normal, &arm);
+        }
+        if let Some((larger, _)) = enlarged {
+            arm *= larger;
         }
         Sample { gamma, outward: shape_normal, arm, surface_velocity }
     }
