@@ -139,8 +139,8 @@ fn campaign<S: Scalar>(swarm: Swarm, most: impl Fn(&Tally) -> u64) {
 
 /// A millisecond.
 #[test]
-fn a_way_is_seldom_missed_at_the_usual_rate() {
-    let most = |tally: &Tally| tally.infeasible / 50_000;
+fn no_way_is_missed_at_the_usual_rate() {
+    let most = |_: &Tally| 0;
     campaign::<f64>(USUAL, most);
     campaign::<f32>(USUAL, most);
     campaign::<Fixed>(USUAL, most);
@@ -149,7 +149,7 @@ fn a_way_is_seldom_missed_at_the_usual_rate() {
 /// 0.2 to 5 ms: a step may be longer than a disc is large.
 #[test]
 fn a_way_is_rarely_missed_at_any() {
-    let most = |tally: &Tally| 1 + tally.infeasible / 20_000;
+    let most = |tally: &Tally| 1 + tally.infeasible / 100_000;
     campaign::<f64>(ANY, most);
     campaign::<f32>(ANY, most);
     campaign::<Fixed>(ANY, most);

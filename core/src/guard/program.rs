@@ -184,7 +184,12 @@ fn within_ball<S: Scalar, const D: usize>(wanted: &Vector<S, D>, speed: S) -> (V
     };
     // A velocity just limited to this speed, longer only by rounding, is to stay what it is.
     let limit = speed + rounding(speed);
-    if norm(&goal) <= limit { (goal, goal) } else { (goal, goal * (speed / norm(&goal))) }
+    let length = norm(&goal);
+    if length <= limit {
+        return (goal, goal);
+    }
+    // In fixed point a small share of a large goal has few digits.
+    (goal, if S::FLOATS { goal * (speed / length) } else { unit(&goal).1 * speed })
 }
 
 /// What rounding may do to a scalar product with a unit vector, for velocities of this size. In fixed point the error does not

@@ -1,5 +1,5 @@
 use super::*;
-use crate::rotation;
+use crate::{Fixed, rotation};
 use nalgebra::{Rotation3, Vector2, Vector3};
 use proptest::prelude::*;
 
@@ -125,6 +125,7 @@ proptest! {
     ) {
         finite::<f64>(v, u, dt, fill)?;
         finite::<f32>(v, u, dt, fill)?;
+        finite::<Fixed>(v, u, dt, fill)?;
     }
 }
 
