@@ -8,115 +8,7 @@
 use crate::adaptive::adapt;
 use crate::ds::Moving;
 use crate::surroundings::Surroundings;
-use crate::{
-    Ageing, Guard, Limits, Motion, Obstacle, Region, Scalar, Scan, Status, SteeringPolicy, Table, TableFull, Vector,
-    in_range, norm,
-};
-
-/// How obstacles bend the motion, and what the robot may be asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings<S> {
-    /// Are soft layers soft? If not, this is the original method: every rho = ln k + 1 counts as 1.
-    pub deformable: bool,
-    /// c, how hard soft layers push, m/s, 0 to 10; eqs. 15 and 27 of Chen et al., see [`adaptive`](crate::adaptive).
-    pub gain: S,
-    /// Which way the push in a soft layer points, and what bounds it.
-    pub steering: SteeringPolicy<S>,
-    /// Speed (m/s) and acceleration (m/s^2).
-    pub limits: Limits<S>,
-    /// What becomes of obstacles that are not updated.
-    pub ageing: Ageing<S>,
-    /// Keeps every sample out of every hard core; `None` leaves it to the modulation, as the papers do.
-    pub guard: Option<Guard<S>>,
-}
-
-impl<S: Scalar> Default for Settings<S> {
-    /// Deformable, c = 0.03 m/s, with the flow at most as fast again, guarded, and the defaults of [`Limits`],
-    /// [`Ageing`] and [`Guard`].
-    fn default() -> Self {
-        Self {
-            deformable: true,
-            gain: S::from_f64(0.03),
-            steering: SteeringPolicy::WithFlow { beta: S::one() },
-            limits: Limits::default(),
-            ageing: Ageing::default(),
-            guard: Some(Guard::default()),
-        }
-    }
-}
-
-/// The setting that is out of its range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SettingsError {
-    /// c: 0 to 10 m/s.
-    Gain,
-    /// cos^2 theta_2 + sin^2 theta_2 = 1 to within 1e-3, or beta 0 to 10.
-    Steering,
-    /// [`Limits::speed`]: above 0, at most 100 m/s.
-    Speed,
-    /// [`Limits::acceleration`]: none, or above 0 and at most 10^4 m/s^2.
-    Acceleration,
-    /// [`Limits::deceleration`]: above 0, at most 10^4 m/s^2.
-    Deceleration,
-    /// Times 0 to 3600 s with hold no less than time to live, growth 0 to 10 m/s.
-    Ageing,
-    /// alpha: above 0, at most 1.
-    Guard,
-}
-
-impl core::fmt::Display for SettingsError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::Gain => "gain is not from 0 to 10 m/s",
-            Self::Steering => "steering has cos^2 + sin^2 further than 1e-3 from 1, or a beta that is not from 0 to 10",
-            Self::Speed => "limits.speed is not above 0 and at most 100 m/s",
-            Self::Acceleration => "limits.acceleration is neither none nor above 0 and at most 10^4 m/s^2",
-            Self::Deceleration => "limits.deceleration is not above 0 and at most 10^4 m/s^2",
-            Self::Ageing => {
-                "ageing has a time not from 0 to 3600 s, a hold below time_to_live, or a growth not from 0 to 10 m/s"
-            }
-            Self::Guard => "guard.approach is not above 0 and at most 1",
-        })
-    }
-}
-
-impl core::error::Error for SettingsError {}
-
-impl<S: Scalar> Settings<S> {
-    /// Checks every range. A controller takes settings as they are: those that come from outside are to be checked
-    /// first.
-    ///
-    /// # Errors
-    /// The first setting out of its range, or not a number, as [`SettingsError`] states it.
-    ///
-    /// ```
-    /// use pliant_core::{Limits, Settings, SettingsError};
-    /// let limits = Limits { speed: 0.0, ..Limits::default() };
-    /// assert_eq!(Settings { limits, ..Settings::<f32>::default() }.check(), Err(SettingsError::Speed));
-    /// assert_eq!(Settings::<f32>::default().check(), Ok(()));
-    /// ```
-    pub fn check(&self) -> Result<(), SettingsError> {
-        let from_zero = |x: S, high: f64| x >= S::zero() && x <= S::from_f64(high);
-        let above_zero = |x: S, high: f64| x > S::zero() && x <= S::from_f64(high);
-        let steering = match self.steering {
-            SteeringPolicy::Fixed { cos, sin } => (cos * cos + sin * sin - S::one()).abs() <= S::from_f64(1e-3),
-            SteeringPolicy::WithFlow { beta } => from_zero(beta, 10.0),
-        };
-        let Ageing { time_to_live, growth, hold } = self.ageing;
-        let ageing = from_zero(time_to_live, 3600.0)
-            && from_zero(growth, 10.0)
-            && from_zero(hold, 3600.0)
-            && hold >= time_to_live;
-        let check = |ok: bool, error: SettingsError| if ok { Ok(()) } else { Err(error) };
-        check(from_zero(self.gain, 10.0), SettingsError::Gain)?;
-        check(steering, SettingsError::Steering)?;
-        check(above_zero(self.limits.speed, 100.0), SettingsError::Speed)?;
-        check(self.limits.acceleration.is_none_or(|a| above_zero(a, 1e4)), SettingsError::Acceleration)?;
-        check(above_zero(self.limits.deceleration, 1e4), SettingsError::Deceleration)?;
-        check(ageing, SettingsError::Ageing)?;
-        check(self.guard.is_none_or(|guard| above_zero(guard.approach, 1.0)), SettingsError::Guard)
-    }
-}
+use crate::{Motion, Obstacle, Region, Scalar, Scan, Settings, Status, Table, TableFull, Vector, in_range, norm};
 
 /// Where the robot is, x: D coordinates, m, finite and within +-1000 m ([`RANGE`](crate::RANGE)).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -184,9 +76,10 @@ pub struct Controller<S: Scalar, const D: usize, const CAP: usize> {
 }
 
 impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
-    /// A controller at rest, without obstacles, its attractor where the motion has it. `settings` are taken as they
-    /// are: [`Settings::check`] those that come from outside.
+    /// A controller at rest, without obstacles, its attractor where the motion has it. Of `settings`, what
+    /// is out of its range counts as [`Settings::within_ranges`] says.
     pub fn new(motion: Motion<S, D>, settings: Settings<S>) -> Self {
+        let settings = settings.within_ranges();
         Self { motion: Moving::new(motion), settings, table: Table::new(), previous: Vector::zeros() }
     }
 
@@ -230,10 +123,10 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         let x = state.position();
         let (dt, valid) = time_step(dt);
         let guard = self.settings.guard.filter(|_| dt > S::zero());
-        let reach = guard.map(|guard| (guard.reach(x, self.settings.limits.speed, dt), dt));
+        let stride = guard.map(|guard| guard.stride(x, self.settings.limits.speed, dt));
         let (relative, nominal) = self.nominal(x);
         let mut around = Surroundings::new(&nominal);
-        self.table.look(x, self.settings.deformable, reach, &mut around);
+        self.table.look(x, self.settings.deformable, stride.as_ref(), &mut around);
         let stages = self.stages(&relative, nominal, &around);
         let (mut velocity, limited) = self.settings.limits.apply(stages.adapted, &self.previous, dt);
         let mut status = stages.status | limited | self.pass(dt);
@@ -241,8 +134,8 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
             velocity = Vector::zeros();
             status |= Status::NOT_FINITE;
         }
-        if let Some(guard) = guard {
-            let guarded = guard.apply(x, &velocity, self.settings.limits.speed, dt, &self.table, &around);
+        if let (Some(guard), Some(stride)) = (guard, stride) {
+            let guarded = guard.apply(x, &velocity, &stride, &self.table, &around);
             velocity = guarded.velocity;
             status.set(Status::GUARDED, guarded.changed);
             status.set(Status::INFEASIBLE, !guarded.feasible);
@@ -323,9 +216,9 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
         self.motion = Moving::new(motion);
     }
 
-    /// Changes the settings; [`Settings::check`] those that come from outside. Unchecked, what is out of its range may leave limits unkept and obstacles unseen.
+    /// Changes the settings; what is out of its range counts as [`Settings::within_ranges`] says.
     pub fn set_settings(&mut self, settings: Settings<S>) {
-        self.settings = settings;
+        self.settings = settings.within_ranges();
         self.table.rules_changed(&self.settings.ageing);
     }
 

@@ -16,8 +16,7 @@
 
 use crate::{Scalar, Status, Vector, unit};
 
-/// Bounds on the commanded velocity. They are taken as they are; [`Settings::check`](crate::Settings::check) checks
-/// them.
+/// Bounds on the commanded velocity. Their ranges are those of [`Settings::check`](crate::Settings::check).
 ///
 /// ```
 /// use pliant_core::nalgebra::Vector2;

@@ -33,7 +33,7 @@
 //! polygon                  one for each convex piece: off its nearest edge, or its nearest corner
 //! wall                     n inwards                    gap = the tangent's, less what the curve bends within speed dt
 //!
-//! room = gap - skin,   skin = max(2^-16 m, 16 eps max(1 m, |x_i|)),   eps: Scalar::EPSILON (in fixed point 16 eps)
+//! room = gap - skin,   skin = max(2^-16 m, 16 eps max(1 m, |x_i|, 8 speed dt)),   eps: Scalar::EPSILON (in fixed point 8 dt m/s for |x_i|)
 //! ```
 //!
 //! [`Status::GUARDED`](crate::Status::GUARDED) says that the command is another than was wanted,
@@ -84,10 +84,13 @@ impl<S: Scalar> Default for Guard<S> {
 }
 
 impl<S: Scalar> Guard<S> {
-    /// Surfaces farther away than this do not bind, m.
-    pub(crate) fn reach<const D: usize>(&self, x: &Vector<S, D>, speed: S, dt: S) -> S {
-        let skin = skin(x);
-        speed * dt / self.approach + skin + skin
+    /// What a step of `dt` (s) from x may lead to, no faster than `speed` (m/s).
+    pub(crate) fn stride<const D: usize>(&self, x: &Vector<S, D>, speed: S, dt: S) -> Stride<S> {
+        let length = speed * dt;
+        // In fixed point slow velocities are as coarse as those of 1 m/s.
+        let unit = rounding(x, if S::FLOATS { length } else { length.max(dt) });
+        let skin = (unit * S::from_f64(16.0)).max(S::from_f64(SKIN));
+        Stride { speed, dt, length, unit, skin, reach: length / self.approach + skin + skin }
     }
 
     /// The velocity nearest to `wanted` that keeps the sample after x out of every core of `table`, which is that of the next sample.
@@ -96,14 +99,13 @@ impl<S: Scalar> Guard<S> {
         &self,
         x: &Vector<S, D>,
         wanted: &Vector<S, D>,
-        speed: S,
-        dt: S,
+        stride: &Stride<S>,
         table: &Table<S, D, CAP>,
         around: &Surroundings<S, D, CAP>,
     ) -> Solution<S, D> {
-        let next = Next { x, wanted, speed, dt, skin: skin(x), table, near: &around.near };
-        let mut seen = HalfSpaces::new(speed);
-        let here = View { at: x, step: speed * dt, approach: self.approach, skin: next.skin, near: next.near };
+        let next = Next { x, wanted, stride, table, near: &around.near };
+        let mut seen = HalfSpaces::new(stride.speed);
+        let here = View { at: x, step: stride.length, approach: self.approach, skin: stride.skin, near: next.near };
         self.look(&next, &here, &mut seen);
         let best = seen.least(wanted);
         if best.feasible { best } else { self.otherwise(&next, &mut seen, best) }
@@ -133,16 +135,17 @@ impl<S: Scalar> Guard<S> {
         next: &Next<'_, S, D, CAP>,
         best: &Vector<S, D>,
     ) -> Option<Vector<S, D>> {
-        let Next { x, wanted, speed, dt, .. } = *next;
+        let Next { x, wanted, stride, .. } = *next;
+        let Stride { speed, dt, length: step, .. } = *stride;
         // The skin is no core: outside of that, by what rounding may do and as much again, is all that has to be.
-        let bare = rounding(x, BARE);
+        let bare = stride.unit * S::from_f64(BARE);
         // One half-space a core is enough to be outside, but another may do as well: those seen from where the best velocity leads.
-        let (landing, step) = (x + best * dt, speed * dt);
+        let landing = x + best * dt;
         let there = View { at: &landing, step: step + step, approach: S::one(), skin: bare + bare, near: next.near };
         let mut seen = HalfSpaces::new(speed);
         self.look(next, &there, &mut seen);
         // In fixed point what half-spaces of thin walls say may be off by more than the skin.
-        let outside = |u: &Vector<S, D>| next.is_clear(&(x + u * dt), rounding(x, 1.0));
+        let outside = |u: &Vector<S, D>| next.is_clear(&(x + u * dt), stride.unit);
         let allowed = seen.allowed(wanted).filter(outside);
         allowed
             .or_else(|| next.is_clear(&landing, bare).then_some(*best))
@@ -170,9 +173,9 @@ impl<S: Scalar> Guard<S> {
                 S::one()
             };
             // Divided, for in fixed point the reciprocal of a short step is out of range.
-            all.add(HalfSpace { normal, offset: (normal.dot(&gone) - room * share) / next.dt });
+            all.add(HalfSpace { normal, offset: (normal.dot(&gone) - room * share) / next.stride.dt });
         };
-        let wish = next.wanted * next.dt - gone;
+        let wish = next.wanted * next.stride.dt - gone;
         for (index, reach) in view.near {
             if let Some(obstacle) = next.table.at(*index) {
                 let reach = *reach + view.step;
@@ -183,10 +186,27 @@ impl<S: Scalar> Guard<S> {
         let scan = next.table.scan();
         if !scan.points().is_empty() {
             let blur = blur(scan.radius());
-            let reach = self.reach(next.x, next.speed, next.dt) + view.step + blur;
+            let reach = next.stride.reach + view.step + blur;
             scan.keep_out(view.at, reach, |normal, gap| keep(normal, gap - blur));
         }
     }
+}
+
+/// How long a step is, and what that comes to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stride<S> {
+    /// The limit, m/s.
+    speed: S,
+    /// The step's time, s.
+    pub dt: S,
+    /// No sample is farther away, m.
+    pub length: S,
+    /// One unit of rounding of where it may lead, m.
+    unit: S,
+    /// What surfaces are kept away, m.
+    skin: S,
+    /// Surfaces farther away than this do not bind, m.
+    pub reach: S,
 }
 
 /// The step to the next sample.
@@ -195,12 +215,7 @@ struct Next<'a, S: Scalar, const D: usize, const CAP: usize> {
     x: &'a Vector<S, D>,
     /// What is wanted, m/s.
     wanted: &'a Vector<S, D>,
-    /// The limit, m/s.
-    speed: S,
-    /// Its time, s.
-    dt: S,
-    /// What surfaces are kept away, m.
-    skin: S,
+    stride: &'a Stride<S>,
     /// What is there at the next sample.
     table: &'a Table<S, D, CAP>,
     /// What of it may be reached: places in the table, each with how far to look for its surface, m.
@@ -216,8 +231,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Next<'_, S, D, CAP> {
     /// May a step lead out of every core? Not if it is known that they hold every place there is within it. `reached` gets those of
     /// [`near`](Next::near) that it may reach; `likely` is the velocity that may best lead out, m/s.
     fn may_lead_out(&self, likely: &Vector<S, D>, reached: &mut heapless::Vec<(usize, S), CAP>) -> bool {
-        let Next { x, speed, dt, skin, table, .. } = *self;
-        let step = speed * dt;
+        let Next { x, table, stride: &Stride { speed, dt, length: step, skin, .. }, .. } = *self;
         let mut out = HalfSpaces::new(speed);
         let mut leads = true;
         for (index, reach) in self.near {
@@ -304,17 +318,11 @@ impl<S: Scalar, const D: usize> HalfSpaces<S, D> {
     }
 }
 
-/// A surface is kept this far away, m: what rounding may do to a distance between two points of this size, and no less
-/// than [`SKIN`].
-fn skin<S: Scalar, const D: usize>(x: &Vector<S, D>) -> S {
-    rounding(x, 16.0).max(S::from_f64(SKIN))
-}
-
-/// So many units of rounding of a position like this one, m. In fixed point all are equally coarse.
-fn rounding<S: Scalar, const D: usize>(x: &Vector<S, D>, units: f64) -> S {
-    let one = S::one();
-    let size = if S::FLOATS { x.iter().fold(one, |m, x| m.max(x.abs())) } else { one };
-    S::EPSILON * S::from_f64(units) * size
+/// One unit of rounding of a position like this one, m; in fixed point all are equally coarse. Half-spaces hold to within 64 epsilon of the speed
+/// ([`nearest`]): the 16 units of the skin are to be more than that is in a long step.
+fn rounding<S: Scalar, const D: usize>(x: &Vector<S, D>, step: S) -> S {
+    let least = S::one().max(step * S::from_f64(8.0));
+    S::EPSILON * if S::FLOATS { x.iter().fold(least, |m, x| m.max(x.abs())) } else { least }
 }
 
 /// By how much the surface of a body of this size, m, counts as nearer, m: what rounding may do to the distance from

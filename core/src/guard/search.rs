@@ -15,7 +15,7 @@
 //! curve), and then one (among ellipsoids alone four) from each end of the step along each axis of the nearest obstacle, four or six in all. So it is bounded,
 //! and what is narrow can be missed.
 
-use super::{BARE, Guard, HalfSpace, HalfSpaces, Next, View, rounding};
+use super::{BARE, Guard, HalfSpace, HalfSpaces, Next, Stride, View};
 use crate::{Matrix, Obstacle, Scalar, Vector, times, unit};
 
 /// Places one after the other, from x and from each end of the step; a look at ellipsoids costs little.
@@ -31,7 +31,7 @@ impl<S: Scalar> Guard<S> {
     #[cold]
     #[inline(never)]
     pub(super) fn search<const D: usize, const CAP: usize>(&self, next: &Next<'_, S, D, CAP>) -> Option<Vector<S, D>> {
-        let Next { x, speed, table, .. } = *next;
+        let Next { x, table, stride: &Stride { speed, .. }, .. } = *next;
         let mut search = Search {
             guard: self,
             next,
@@ -100,15 +100,15 @@ impl<S: Scalar, const D: usize, const CAP: usize> Search<'_, S, D, CAP> {
     }
 
     fn leads_outside(&self, velocity: &Vector<S, D>) -> bool {
-        let Next { x, dt, .. } = *self.next;
-        self.next.is_clear(&(x + velocity * dt), rounding(x, BARE))
+        let Next { x, stride, .. } = *self.next;
+        self.next.is_clear(&(x + velocity * stride.dt), stride.unit * S::from_f64(BARE))
     }
 
     /// The half-spaces seen from where a velocity leads, and tangents of walls from there and before.
     fn look(&mut self, velocity: &Vector<S, D>) -> HalfSpaces<S, D> {
-        let Next { x, speed, dt, .. } = *self.next;
+        let Next { x, stride: &Stride { speed, dt, length: step, unit, .. }, .. } = *self.next;
         let at = x + velocity * dt;
-        let (step, skin) = (speed * dt, rounding(x, BARE + BARE));
+        let skin = unit * S::from_f64(BARE + BARE);
         let mut seen = HalfSpaces::new(speed);
         let there = View { at: &at, step: step + step, approach: S::one(), skin, near: &self.others };
         self.guard.look(self.next, &there, &mut seen);

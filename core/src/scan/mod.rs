@@ -170,6 +170,13 @@ impl<S: Scalar, const D: usize> Scan<S, D> {
     }
 
     /// The same for a time that may be long.
+    pub(crate) fn pass(&mut self, time: S, ageing: &Ageing<S>) {
+        if !self.points.is_empty() {
+            self.carry(self.age + time, ageing);
+        }
+    }
+
+    /// As it is at that age.
     pub(crate) fn carry(&mut self, age: S, ageing: &Ageing<S>) {
         // Who knows no age is taken for as old as can be; and it may come out of a table, where it was old.
         self.age = if age <= ageing.hold { age.max(S::zero()) } else { ageing.hold };

@@ -31,6 +31,18 @@ impl Superellipsoid {
         let p = self.powers::<S>();
         S::from_f64(1.2) * p * (p + p - S::one()) * stride * stride
     }
+
+    /// Whatever the step's length: |delta_i| <= s, with s times the gauge of (1, 1, ...) what the gauge of u `lacks` to one, for no gauge of a
+    /// sum is more than the sum of the gauges. From outside that is none.
+    fn keep_within<S: Scalar, const D: usize>(&self, lacks: S, mut keep: impl FnMut(Vector<S, D>, S)) {
+        let one = S::one();
+        let room = lacks / root((0..D).fold(S::zero(), |sum, _| sum + one), self.p);
+        for i in 0..D {
+            let side = |sign: S| Vector::from_fn(|j, _| if i == j { sign } else { S::zero() });
+            keep(side(-one), room);
+            keep(side(one), room);
+        }
+    }
 }
 
 impl Superellipsoid {
@@ -88,15 +100,8 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
                 keep(at.u.map(|u| -slope(u, self.p)), gap * S::from_f64(0.5) / self.powers());
                 return;
             }
-            // A step is longer than the bend allows: |delta_i| <= s, with s times the gauge of (1, 1, ...) what the
-            // gauge of u lacks to one, for no gauge of a sum is more than the sum of the gauges.
-            let room = (one - self.gauge(&at.u)) / root(at.u.iter().fold(S::zero(), |sum, _| sum + one), self.p);
-            for i in 0..D {
-                let side = |sign: S| Vector::from_fn(|j, _| if i == j { sign } else { S::zero() });
-                keep(side(-one), room);
-                keep(side(one), room);
-            }
-            return;
+            // A step is longer than the bend allows.
+            return self.keep_within(one - self.gauge(&at.u), keep);
         }
         // The supporting half-space where the ray from the centre leaves the surface: the normal there is that at u.
         let largest = at.u.iter().fold(S::zero(), |m, u| m.max(u.abs()));
@@ -111,6 +116,10 @@ impl<S: Scalar, const D: usize> Surface<S, D> for Superellipsoid {
             // Where the ray leaves it the tangent is off by what bends on the way back to there and within the step.
             let y = at.u / gauge;
             let bend = self.bend(at.step * steepest + S::norm((at.u - y).as_slice()));
+            // In fixed point what bends more may be more than a number can say.
+            if bend > S::MAX * S::from_f64(0.5) {
+                return self.keep_within(one - gauge, keep);
+            }
             keep(y.map(|u| -slope(u, self.p)), one - gauge - bend * S::from_f64(0.5) / self.powers());
             return;
         }

@@ -26,6 +26,7 @@
 
 mod ageing;
 mod clusters;
+mod pace;
 
 #[cfg(test)]
 mod tests;
@@ -34,16 +35,14 @@ pub use ageing::Ageing;
 
 use core::hint::select_unpredictable;
 
+use crate::guard::Stride;
 use crate::modulation::Modulation;
 use crate::obstacle::Abreast;
 use crate::scalar::lanes::Lanes;
 use crate::surroundings::Surroundings;
 use crate::{Obstacle, Scalar, Scan, Status, Vector};
 use clusters::Clusters;
-
-/// A step that is longer than this may pass several ages at once, s; in a shorter one an obstacle does all of it what it did at its beginning,
-/// which is what the guard saw coming.
-const LONG: f64 = 0.1;
+use pace::Pace;
 
 /// An obstacle, who it is, and how long ago it was seen.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,6 +124,7 @@ pub struct Table<S: Scalar, const D: usize, const CAP: usize> {
     entries: heapless::Vec<Entry<S, D>, CAP>,
     clusters: Clusters<CAP>,
     scan: Scan<S, D>,
+    pace: Pace<S>,
     revision: u32,
 }
 
@@ -137,7 +137,14 @@ impl<S: Scalar, const D: usize, const CAP: usize> Default for Table<S, D, CAP> {
 impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     /// An empty table.
     pub fn new() -> Self {
-        Self { entries: heapless::Vec::new(), clusters: Clusters::new(), scan: Scan::default(), revision: 0 }
+        const { assert!(D == 2 || D == 3, "obstacles are in the plane or in space") };
+        Self {
+            entries: heapless::Vec::new(),
+            clusters: Clusters::new(),
+            scan: Scan::default(),
+            pace: Pace::default(),
+            revision: 0,
+        }
     }
 
     /// Puts an obstacle in, or in the place of the one with the same identifier. `age` is how many seconds ago it was
@@ -171,6 +178,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
             }
         };
         self.clusters.changed(index, &mut self.entries);
+        self.pace = Pace::of(self.entries.iter().map(Entry::obstacle));
         self.revision = self.revision.wrapping_add(1);
         Ok(())
     }
@@ -183,6 +191,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         self.entries.swap_remove(index);
         let last = self.entries.len();
         self.clusters.removed(index, last, &mut self.entries);
+        self.pace = Pace::of(self.entries.iter().map(Entry::obstacle));
         self.revision = self.revision.wrapping_add(1);
         true
     }
@@ -199,6 +208,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     pub fn clear(&mut self) {
         self.entries.clear();
         self.clusters = Clusters::new();
+        self.pace = Pace::default();
         self.scan = Scan::default();
         self.revision = self.revision.wrapping_add(1);
     }
@@ -229,13 +239,14 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
         &self.scan
     }
 
-    /// Lets `dt` >= 0 seconds pass: obstacles move on, and the ones nobody spoke of grow, then stop; the
+    /// Lets `dt` seconds pass, none if that is below 0 or no number: obstacles move on, and the ones nobody spoke of grow, then stop; the
     /// [module](self) has the formulas. How old they were before the step, as [`Status::EXTRAPOLATED`] and
     /// [`Status::HELD`], and [`Status::CLUSTER`] where some overlap without a common point.
     pub fn advance(&mut self, dt: S, ageing: &Ageing<S>) -> Status {
         let mut status = self.scan.status(ageing) | self.clusters.status();
         let fresh = ageing.time_to_live.min(ageing.hold);
-        if dt > S::from_f64(LONG) {
+        let dt = S::zero().max(dt);
+        if dt > S::from_f64(pace::LONG) {
             for entry in &mut self.entries {
                 if entry.age >= ageing.hold {
                     status |= Status::HELD;
@@ -244,7 +255,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
                 }
                 entry.pass(dt, ageing);
             }
-            self.scan.advance(dt, ageing);
+            self.scan.pass(dt, ageing);
             return status;
         }
         for entry in &mut self.entries {
@@ -282,18 +293,18 @@ impl<S: Scalar, const D: usize, const CAP: usize> Table<S, D, CAP> {
     }
 
     /// How all obstacles look from x, into `around`, which is new: its velocity is bent round them all. With
-    /// `deformable` false every soft layer is ignored. `reach` is how far the robot may see its way ahead, m, and the
-    /// time step, s, if anything within it is to be listed.
+    /// `deformable` false every soft layer is ignored. `stride` is the step ahead, if what may bind it is to be listed.
     #[inline]
     pub(crate) fn look(
         &self,
         x: &Vector<S, D>,
         deformable: bool,
-        reach: Option<(S, S)>,
+        stride: Option<&Stride<S>>,
         around: &mut Surroundings<S, D, CAP>,
     ) {
         // Here rather than in there, where each obstacle would load and store it.
         let mut modulation: Modulation<S, D, CAP> = Modulation::new(&around.velocity);
+        let reach = stride.map(|stride| (stride.reach + self.pace.turning(stride), stride.dt));
         let (mut gamma, mut nearest) = (S::MAX, None);
         let (mut left, mut index) = (self.entries.iter(), 0);
         loop {

@@ -132,3 +132,16 @@ fn a_surface_comes_as_fast_as_it_says_when_the_rules_of_ageing_change() {
     }
     assert!(grew > 600, "{grew}");
 }
+
+#[test]
+fn a_time_that_is_none_is_no_time() {
+    let ageing = Ageing { time_to_live: 0.0, ..Ageing::default() };
+    let mut table: Table<f64, 2, 1> = Table::new();
+    let ball = ObstacleSpec { velocity: Vector::<f64, 2>::new(1.0, 0.0), ..ObstacleSpec::default() };
+    table.upsert(1, Obstacle::new(ball).unwrap(), 0.0, &ageing).unwrap();
+    let before = table.iter().next().unwrap().clone();
+    for dt in [f64::NAN, -1.0, f64::NEG_INFINITY, 0.0] {
+        table.advance(dt, &ageing);
+        assert_eq!(table.iter().next().unwrap(), &before, "{dt}");
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::{finite, round};
 use crate::message::{DeviceError, Field, Settings, Steering};
-use pliant_core::controller::SettingsError;
+use pliant_core::SettingsError;
 use pliant_core::{Ageing, Guard, Limits, Scalar, SteeringPolicy};
 
 /// Settings that were checked, from a [`ToDevice::Configure`](crate::ToDevice::Configure).
