@@ -27,6 +27,8 @@ pub enum Outcome {
 pub struct Error {
     exit: u8,
     diagnostic: Box<dyn Diagnostic + Send + Sync>,
+    /// File and line, from 1, where there is no picture of the place.
+    at: Option<(String, u64)>,
 }
 
 const FAILED: u8 = 1;
@@ -49,12 +51,17 @@ impl Diagnostic for Plain {
 impl Error {
     /// What the command was given is wrong: exit 2. The message names the file, line and field, and what is allowed.
     pub fn bad_input(message: impl Into<String>) -> Self {
-        Self { exit: BAD_INPUT, diagnostic: Box::new(Plain { message: message.into(), help: None }) }
+        Self { exit: BAD_INPUT, diagnostic: Box::new(Plain { message: message.into(), help: None }), at: None }
     }
 
     /// What the command ran has failed, and it has printed nothing about it: exit 1.
     pub fn failed(message: impl Into<String>) -> Self {
-        Self { exit: FAILED, diagnostic: Box::new(Plain { message: message.into(), help: None }) }
+        Self { exit: FAILED, diagnostic: Box::new(Plain { message: message.into(), help: None }), at: None }
+    }
+
+    /// The same error, of one line of a file, from 1, which its message names.
+    pub fn at_line(self, file: impl Into<String>, line: u64) -> Self {
+        Self { at: Some((file.into(), line)), ..self }
     }
 
     /// The same error, with a hint of what to do.
@@ -92,6 +99,9 @@ impl Error {
             known("file", file.map(Value::from));
             known("line", Some(line.into()));
             known("column", Some(column.into()));
+        } else if let Some((file, line)) = &self.at {
+            known("file", Some(file.as_str().into()));
+            known("line", Some((*line).into()));
         }
         json!({ "error": error })
     }
@@ -149,7 +159,7 @@ pub fn counted(count: usize, thing: &str) -> String {
 
 impl<E: Diagnostic + Send + Sync + 'static> From<E> for Error {
     fn from(diagnostic: E) -> Self {
-        Self { exit: BAD_INPUT, diagnostic: Box::new(diagnostic) }
+        Self { exit: BAD_INPUT, diagnostic: Box::new(diagnostic), at: None }
     }
 }
 
@@ -215,5 +225,7 @@ mod tests {
         let keys: Vec<&String> = object["error"].as_object().unwrap().keys().collect();
         assert_eq!(keys, ["causes", "exit", "help", "message"]);
         assert_eq!(written(Err(Error::bad_input("no")), false).0, 2);
+        let of_line = Error::bad_input("h.csv, line 2: no number").at_line("h.csv", 2).to_json();
+        assert_eq!((&of_line["error"]["file"], &of_line["error"]["line"]), (&json!("h.csv"), &json!(2)));
     }
 }

@@ -58,9 +58,10 @@ impl Points {
     /// # Errors
     /// The line and what is wrong with it.
     pub fn read(path: &Path, dimension: usize) -> Result<Self, Error> {
-        let file = path.display();
+        let file = path.display().to_string();
         let bytes = std::fs::read(path).map_err(|e| Error::bad_input(format!("{file}: cannot be read: {e}")))?;
-        Self::parse(&bytes, dimension).map_err(|(line, what)| Error::bad_input(format!("{file}, line {line}: {what}")))
+        Self::parse(&bytes, dimension)
+            .map_err(|(line, what)| Error::bad_input(format!("{file}, line {line}: {what}")).at_line(&file, line))
     }
 
     /// The line at fault, from 1, and what is wrong with it.

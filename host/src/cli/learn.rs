@@ -182,6 +182,13 @@ fn arrives(learnt: &Learnt, options: &Options) -> Result<(), Error> {
 const SMALL: f64 = 5e-4;
 const SHORT: f64 = 2e-3;
 
+/// With the line of a CSV file that is at fault.
+fn unread(error: LearnError) -> Error {
+    let at = if let LearnError::Line { file, line, .. } = &error { Some((file.clone(), *line)) } else { None };
+    let error = Error::from(error);
+    at.into_iter().fold(error, |error, (file, line)| error.at_line(file, line))
+}
+
 /// Where no motion is found: the rate that was asked for, or the unit of what was given.
 fn unfitted(error: LearnError, sigma: f64, extent: f64, longest: f64) -> Error {
     match error {
@@ -222,7 +229,7 @@ pub(super) fn main(args: &Args, json: bool) -> Finished {
     }
     output::spare(&out, args.demos.iter().map(PathBuf::as_path))?;
     output::is_model(&out)?;
-    let new = read::recordings(&args.demos, args.unit)?;
+    let new = read::recordings(&args.demos, args.unit).map_err(unread)?;
     let old = args.add_to.as_ref().map(|path| ModelFile::read(path).map(|model| (path, model))).transpose()?;
     let learnt_with = old.as_ref().and_then(|(_, model)| model.learnt.as_ref());
     let usual = Options::default();

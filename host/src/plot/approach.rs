@@ -16,21 +16,25 @@ pub struct Clearance {
     pub robot: Vector3<f64>,
     /// m
     pub surface: Vector3<f64>,
+    /// Is the robot in the core?
+    pub inside: bool,
 }
 
 impl Clearance {
-    /// m
+    /// m; below zero inside.
     pub fn distance(&self) -> f64 {
-        (self.robot - self.surface).norm()
+        let apart = (self.robot - self.surface).norm();
+        if self.inside { -apart } else { apart }
     }
 
     /// As it is written in a figure.
     pub fn label(&self) -> String {
-        match self.distance() {
+        let apart = match self.distance().abs() {
             d if d < 0.00995 => format!("{:.1} mm", d * 1e3),
             d if d < 0.9995 => format!("{:.0} mm", d * 1e3),
             d => format!("{d:.2} m"),
-        }
+        };
+        if self.inside { format!("{apart} inside") } else { apart }
     }
 }
 
@@ -54,7 +58,8 @@ pub fn clearance(scene: &Scene, p: &TrajectoryPoint) -> Option<Clearance> {
     let scan = scene.scan().into_iter().flat_map(|scan| {
         scan.points().iter().map(|c| c + (p.position - c).try_normalize(0.0).unwrap_or_default() * scan.radius())
     });
-    let scan = scan.map(|surface| Clearance { time: p.time, robot: p.position, surface });
+    let inside = scene.scan().is_some_and(|scan| scan.gamma(&p.position) < 1.0);
+    let scan = scan.map(|surface| Clearance { time: p.time, robot: p.position, surface, inside });
     found.into_iter().chain(scan).min_by(|a, b| a.distance().total_cmp(&b.distance()))
 }
 
@@ -74,7 +79,9 @@ fn nearer(best: Option<Clearance>, o: &PosedObstacle<'_>, p: &TrajectoryPoint) -
     if !o.obstacle.is_wall() && best.is_some_and(|b| b.distance() < at_least) {
         return best;
     }
-    let here = Clearance { time: p.time, robot: p.position, surface: nearest(o, &p.position) };
+    // A margin is no core.
+    let inside = o.gamma(&p.position) < 1.0 && o.without_margin().gamma(&p.position) < 1.0;
+    let here = Clearance { time: p.time, robot: p.position, surface: nearest(o, &p.position), inside };
     Some(best.filter(|b| b.distance() <= here.distance()).unwrap_or(here))
 }
 

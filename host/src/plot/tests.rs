@@ -164,6 +164,20 @@ fn the_nearest_approach_is_that_to_the_true_surface() {
 }
 
 #[test]
+fn how_deep_a_robot_is_in_a_core_is_no_distance() {
+    let margin = BALLS.replace("\"ball\"", "\"ball\"\nmargin = [1.5, 1.5, 1.5]");
+    let scene = Scene::parse("s.toml", &margin, "".as_ref()).unwrap();
+    let at = |z: f64| {
+        let path = Trajectory::from_positions(&[Vector3::new(0.0, 0.0, z); 2], 0.01);
+        approach::nearest_approach(&scene, &path).unwrap()
+    };
+    assert_eq!(at(0.36).label(), "60 mm inside");
+    assert!(at(0.36).distance() < at(0.31).distance());
+    // Only within the margin.
+    assert_eq!(at(0.25).label(), "50 mm");
+}
+
+#[test]
 fn a_path_is_dashed_where_a_core_is_before_it_and_nowhere_else() {
     let scene = Scene::parse("s.toml", BALLS, "".as_ref()).unwrap();
     let path = straight();

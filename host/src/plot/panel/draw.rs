@@ -177,7 +177,8 @@ impl Panel<'_> {
             self.clearances.iter().for_each(|c| svg.circle(pixel(&c.robot), 2.2, CLEARANCE_END));
         }
         self.options.lost.iter().for_each(|p| svg.square(pixel(p), 1.8 + self.line(), LOST));
-        self.options.entries.iter().for_each(|p| svg.cross(pixel(p), 1.8 + self.line(), ENTRY));
+        let entered = self.clearances.iter().filter(|c| c.inside).map(|c| &c.robot);
+        self.options.entries.iter().chain(entered).for_each(|p| svg.cross(pixel(p), 1.8 + self.line(), ENTRY));
         for c in &self.clearances {
             labels.text(svg, nalgebra::center(&pixel(&c.robot), &pixel(&c.surface)), &c.label());
         }

@@ -72,6 +72,9 @@ impl Check<'_> {
         let position = self.point(&start.position, "start.position")?;
         let problem = match obstacles.iter().find(|o| o.at(0.0).gamma(&position) <= 1.0) {
             Some(o) if o.is_wall() => format!("is outside the free space of the wall \"{}\"", o.name()),
+            Some(o) if o.at(0.0).without_margin().gamma(&position) > 1.0 => {
+                format!("is within the margin of obstacle \"{}\", which is kept off as its hard core is", o.name())
+            }
             Some(o) => format!("is inside the hard core of obstacle \"{}\"", o.name()),
             None if scan.is_some_and(|s| s.gamma(&position) <= 1.0) => {
                 "is within the radius of one of the scan's points".to_owned()

@@ -89,6 +89,7 @@ const BAD: &[Case] = &[
     // places
     (GOOD, "reference = [0.0, 0.0]", "reference = [0.0, 0.05]", 21, "obstacle.reference", "outside the hard core"),
     (GOOD, "0.37, 0.41", "0.21, 0.22", 10, "start.position", "hard core of obstacle \"foam\""),
+    (GOOD, "margin = [1.0, 1.0]", "margin = [6.0, 6.0]", 10, "start.position", "within the margin of obstacle \"foam\""),
     (GOOD, "0.20, 0.21", "0.01, 0.01", 14, "obstacle.center", "attractor inside the hard core"),
     // A margin makes the core larger.
     (GOOD, "margin = [1.0, 1.0]", "margin = [9.0, 9.0]", 14, "obstacle.center", "attractor inside the hard core"),
