@@ -47,8 +47,9 @@ bitflags! {
         const CLUSTER = 1 << 7;
         /// The guard changed the command, for by the next sample it would have come nearer to a hard core than it may.
         const GUARDED = 1 << 8;
-        /// The guard found no velocity within the speed limit that keeps the next sample out of every hard core, and
-        /// standing still does not either: the command violates what the worst of them asks for the least.
+        /// The guard found no velocity within the speed limit that keeps the next sample out of every hard core by more than rounding may do
+        /// (within a metre 4 units and 8 more for each metre of the body's size: in fixed point 4 um for small bodies), and standing still
+        /// does not either: the command violates what the worst of them asks for the least.
         const INFEASIBLE = 1 << 9;
     }
 }

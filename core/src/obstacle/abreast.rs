@@ -14,9 +14,9 @@ pub(crate) struct Abreast<S: Scalar, const D: usize> {
 }
 
 impl<S: Scalar, const D: usize> Abreast<S, D> {
-    /// Is there anything to gain? Not with one lane, nor in space with `f64`, of which more numbers have to be
-    /// gathered than registers hold.
-    pub const WORTH_IT: bool = LANES > 1 && size_of::<[S; D]>() <= 16;
+    /// Is there anything to gain? Not with one lane, nor in fixed point, which has no such registers, nor in space with `f64`, of which
+    /// more numbers have to be gathered than registers hold.
+    pub const WORTH_IT: bool = S::FLOATS && LANES > 1 && size_of::<[S; D]>() <= 16;
 
     /// How obstacles of the usual kind look from x, with the bits that [`Obstacle::sample`] gives; `None` if one is
     /// of another, or too far to matter.
