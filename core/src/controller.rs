@@ -30,7 +30,7 @@ impl<S: Scalar, const D: usize> RobotState<S, D> {
 /// What a tick asks of the robot, and what it saw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Command<S: Scalar, const D: usize> {
-    /// The velocity to drive with until the next tick, m/s: at most [`Limits::speed`] long.
+    /// The velocity to drive with until the next tick, m/s: at most [`Limits::speed`](crate::Limits::speed) long.
     pub velocity: Vector<S, D>,
     /// The least Gamma of all obstacles and points at x, as they are at this sample, dimensionless: above 1 outside
     /// every hard core; [`Scalar::MAX`] without obstacles.
@@ -145,7 +145,7 @@ impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
     }
 
     /// One step of `dt` seconds (as in [`Controller::tick`]) without a fresh state: from the last command towards
-    /// rest, by [`Limits::ramp_down`]. `last` is where the robot was last known to be, of which gamma, nearest and
+    /// rest, by [`Limits::ramp_down`](crate::Limits::ramp_down). `last` is where the robot was last known to be, of which gamma, nearest and
     /// region speak. Nobody knows where it is now, so there is nothing to guard. The status has [`Status::LATE`], and
     /// what stage 5 sets.
     pub fn tick_late(&mut self, last: &RobotState<S, D>, dt: S) -> Command<S, D> {
