@@ -78,6 +78,8 @@ pub struct Controller<S: Scalar, const D: usize, const CAP: usize> {
 impl<S: Scalar, const D: usize, const CAP: usize> Controller<S, D, CAP> {
     /// A controller at rest, without obstacles, its attractor where the motion has it. Of `settings`, what
     /// is out of its range counts as [`Settings::within_ranges`] says.
+    // A controller is tens of kilobytes: built where it will be, it is on a small stack once.
+    #[inline(always)]
     pub fn new(motion: Motion<S, D>, settings: Settings<S>) -> Self {
         let settings = settings.within_ranges();
         Self { motion: Moving::new(motion), settings, table: Table::new(), previous: Vector::zeros() }
