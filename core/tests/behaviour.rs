@@ -3,7 +3,7 @@
 
 use pliant_core::{
     Ageing, Controller, Fixed, Guard, Limits, Motion, Obstacle, ObstacleSpec, RobotState, Scalar, Scan, Settings,
-    Shape, Status, SteeringPolicy, Vector, rotation,
+    Shape, Status, SteeringPolicy, Table, Vector, rotation,
 };
 use rand::{Rng, SeedableRng};
 
@@ -458,4 +458,41 @@ fn thin_bodies_are_no_less_exact_in_fixed_point() {
         assert!(error <= 1e-3 + 5e-3 * exact.norm(), "{error}: {exact} {fixed}, {axes:?} {goal:?} {at:?} {angle}");
     }
     assert!(compared > 10_000, "{compared}");
+}
+
+/// A step of a second begins while a ball is trusted and ends when it has grown by ageing.
+#[test]
+fn ageing_that_begins_within_a_long_step_is_seen_coming() {
+    fn drive<S: Scalar>() {
+        let s = S::from_f64;
+        let v = |x: f64, y: f64| Vector::<S, 2>::new(s(x), s(y));
+        let limits = Limits { speed: s(0.01), ..Limits::default() };
+        let settings = Settings { limits, guard: Some(Guard { approach: S::one() }), ..Settings::default() };
+        let mut controller: Controller<S, 2, 1> =
+            Controller::new(Motion::linear(v(0.0, 0.0), S::one()).unwrap(), settings);
+        controller.upsert(1, Obstacle::new(ObstacleSpec::default()).unwrap(), S::zero()).unwrap();
+        let state = RobotState::new(v(0.0612, 0.0)).unwrap();
+        let command = controller.tick(&state, S::one());
+        let after = controller.table().iter().next().unwrap().obstacle().gamma(&(state.position() + command.velocity));
+        assert!(after >= S::one() || command.status.contains(Status::INFEASIBLE), "{after}: {command:?}");
+    }
+    drive::<f64>();
+    drive::<f32>();
+    drive::<Fixed>();
+}
+
+/// Thousands of times its size is out of fixed point's range, but its length is not.
+#[test]
+fn what_is_small_grows_as_far_in_fixed_point() {
+    let s = Fixed::from_f64;
+    let forever = Ageing { time_to_live: s(1000.0), growth: s(0.0), hold: s(1000.0) };
+    let small = Shape::ellipsoid(Vector::<Fixed, 2>::repeat(s(0.002)));
+    let spec = ObstacleSpec { shape: small, growth: s(1.0), ..ObstacleSpec::default() };
+    let mut table: Table<Fixed, 2, 1> = Table::new();
+    table.upsert(1, Obstacle::new(spec).unwrap(), s(0.0), &forever).unwrap();
+    for _ in 0..80 {
+        table.advance(s(0.0625), &forever);
+    }
+    let surface = table.iter().next().unwrap().obstacle().surface(&Vector::<Fixed, 2>::new(s(1.0), s(0.0)));
+    assert!((surface.x.to_f64() - 5.002).abs() < 1e-3, "{surface}");
 }
