@@ -93,7 +93,7 @@ fn case<S: Scalar, const D: usize>(r: &mut Random, wall: bool, pace: Pace) -> Op
 
 fn campaign<S: Scalar, const D: usize>(wall: bool, pace: Pace) {
     let (mut tried, mut said) = (0_u64, 0_u64);
-    let wanted = share(24);
+    let wanted = share(6);
     for seed in 0.. {
         if tried >= wanted {
             break;
