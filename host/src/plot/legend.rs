@@ -61,7 +61,11 @@ pub(super) fn draw(svg: &mut Svg, panels: &[&Panel<'_>], corner: Pixel, right: f
             "demonstration".into(),
             Box::new(|svg, p| dash(svg, p, &demonstration(line))),
         ),
-        (any(&|p| p.has_entries()), "ends in a core".into(), Box::new(|svg, p| svg.cross(p, 4.5, ENTRY))),
+        (
+            any(&|p| p.has_entries()),
+            if any(&|p| p.has_ends()) { "ends in a core" } else { "in a core" }.into(),
+            Box::new(|svg, p| svg.cross(p, 4.5, ENTRY)),
+        ),
         (any(&|p| p.has_lost()), "never arrives".into(), Box::new(|svg, p| svg.square(p, 3.2, LOST))),
         (any(&|p| p.has_reference()), "path without obstacles".into(), Box::new(|svg, p| dash(svg, p, REFERENCE))),
         (

@@ -137,7 +137,10 @@ impl<'a> Panel<'a> {
         !self.options.demonstrations.is_empty()
     }
     pub fn has_entries(&self) -> bool {
-        !self.options.entries.is_empty() || self.clearances.iter().any(|c| c.inside)
+        self.has_ends() || self.clearances.iter().any(|c| c.inside)
+    }
+    pub fn has_ends(&self) -> bool {
+        !self.options.entries.is_empty()
     }
     pub fn has_lost(&self) -> bool {
         !self.options.lost.is_empty()
